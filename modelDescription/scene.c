@@ -143,8 +143,8 @@ static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
   xmlTextWriterEndElement(writer);
 }
 
-static void write_thing(xmlTextWriterPtr writer, const char *name, const struct Samples *samples, size_t thing) {
-  if (samples->things[thing].name != NULL) write_attribute(writer, name, samples->things[thing].name);
+static void write_object(xmlTextWriterPtr writer, const char *name, const struct Samples *samples, size_t object) {
+  if (samples->objects[object].name != NULL) write_attribute(writer, name, samples->objects[object].name);
 }
 
 static char *force_name(const struct Samples *samples, size_t constraint) {
@@ -153,8 +153,8 @@ static char *force_name(const struct Samples *samples, size_t constraint) {
 
 static void write_rod(xmlTextWriterPtr writer, const struct Samples *samples, const struct Rod *rod) {
   xmlTextWriterStartElement(writer, BAD_CAST "rod");
-  write_thing(writer, "from", samples, rod->from);
-  write_thing(writer, "to", samples, rod->to);
+  write_object(writer, "from", samples, rod->from);
+  write_object(writer, "to", samples, rod->to);
   if (rod->has_force) {
     write_attribute(writer, "force", force_name(samples, rod->constraint));
     write_rounded(writer, "factor", rod->factor);
@@ -171,10 +171,10 @@ static void write_coordinate(xmlTextWriterPtr writer, const char *name, double c
 static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct SceneJoint *joint,
                         char **formulas) {
   xmlTextWriterStartElement(writer, BAD_CAST "joint");
-  write_thing(writer, "of", samples, joint->of);
+  write_object(writer, "of", samples, joint->of);
   write_coordinate(writer, "x", joint->coordinates[0], formulas[0]);
   write_coordinate(writer, "y", joint->coordinates[1], formulas[1]);
-  write_thing(writer, "with", samples, joint->with);
+  write_object(writer, "with", samples, joint->with);
   write_coordinate(writer, "withX", joint->coordinates[2], formulas[2]);
   write_coordinate(writer, "withY", joint->coordinates[3], formulas[3]);
   for (size_t i = 0; i < joint->force_count; i++) {
@@ -188,7 +188,7 @@ static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, 
 static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples, const struct SceneSurface *surface) {
   static const char *const normals[3] = {"nx", "ny", "nz"};
   xmlTextWriterStartElement(writer, BAD_CAST "surface");
-  write_thing(writer, "of", samples, surface->thing);
+  write_object(writer, "of", samples, surface->object);
   for (int axis = 0; axis < 3; axis++) {
     write_rounded(writer, axes[axis], surface->point[axis]);
     write_rounded(writer, normals[axis], surface->normal[axis]);
@@ -197,7 +197,7 @@ static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples
   xmlTextWriterEndElement(writer);
 }
 
-static void write_what_holds(xmlTextWriterPtr writer, const struct Model *model) {
+static void write_connections(xmlTextWriterPtr writer, const struct Model *model) {
   struct Samples samples = take_samples(model, false, NULL);
   struct Connections connections = find_connections(&samples);
   char **formulas = joint_formulas(model, &connections);
@@ -222,6 +222,6 @@ void scene_write(xmlTextWriterPtr writer, const struct Model *model) {
   for (size_t i = 0; i < model->mechanism.body_count; i++) write_body(writer, model, &model->mechanism.bodies[i]);
   write_shapes(writer, model);
   for (size_t i = 0; i < model->drawing.count; i++) write_line(writer, &model->drawing.lines[i]);
-  write_what_holds(writer, model);
+  write_connections(writer, model);
   xmlTextWriterEndElement(writer);
 }

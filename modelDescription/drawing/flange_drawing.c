@@ -15,10 +15,10 @@ static double sine(int corner) {
 struct Drawing flange_drawing(void) {
   static const double centre = PICTURE_SIZE / 2.0, radius = 0.46 * PICTURE_SIZE;
   struct Drawing drawing = {0};
-  struct PicturePoint spots[CORNERS + 1];
+  struct PicturePoint points[CORNERS + 1];
   for (int i = 0; i <= CORNERS; i++)
-    spots[i] = (struct PicturePoint){centre + radius * sine(i + QUARTER), centre + radius * sine(i)};
-  append_shape(&drawing, SOLID, true, spots, CORNERS);
-  append_shape(&drawing, SIGNAL, false, spots, CORNERS + 1);
+    points[i] = (struct PicturePoint){centre + radius * sine(i + QUARTER), centre + radius * sine(i)};
+  append_shape(&drawing, SOLID, true, points, CORNERS);
+  append_shape(&drawing, SIGNAL, false, points, CORNERS + 1);
   return drawing;
 }

@@ -16,35 +16,35 @@ enum { SIDE = 128, ROW = 1 + 3 * SIDE, IMAGE = SIDE * ROW }; /* each row begins 
 /* --- Pixels -------------------------------------------------------------------------------------------------------- */
 
 /* Returns the distance from a point to a segment, which may be a point. */
-static double distance_to_line(struct PicturePoint spot, struct PicturePoint from, struct PicturePoint to) {
+static double distance_to_line(struct PicturePoint point, struct PicturePoint from, struct PicturePoint to) {
   double right = to.right - from.right, up = to.up - from.up, length = right * right + up * up;
-  double along = length > 0.0 ? ((spot.right - from.right) * right + (spot.up - from.up) * up) / length : 0.0;
+  double along = length > 0.0 ? ((point.right - from.right) * right + (point.up - from.up) * up) / length : 0.0;
   along = fmin(fmax(along, 0.0), 1.0);
-  return hypot(spot.right - from.right - along * right, spot.up - from.up - along * up);
+  return hypot(point.right - from.right - along * right, point.up - from.up - along * up);
 }
 
 /* Returns the distance to the nearest segment of a shape; a polygon is closed. is_inside: for convex polygons. */
-static double distance_to_shape(const struct Shape *shape, struct PicturePoint spot, bool *is_inside) {
+static double distance_to_shape(const struct Shape *shape, struct PicturePoint point, bool *is_inside) {
   double distance = INFINITY;
   bool has_left = false, has_right = false;
   size_t lines = shape->count == 1 || shape->is_filled ? shape->count : shape->count - 1;
   for (size_t i = 0; i < lines; i++) {
     struct PicturePoint from = shape->points[i], to = shape->points[(i + 1) % shape->count];
-    double side = (to.right - from.right) * (spot.up - from.up) - (to.up - from.up) * (spot.right - from.right);
+    double side = (to.right - from.right) * (point.up - from.up) - (to.up - from.up) * (point.right - from.right);
     has_left |= side > 0.0;
     has_right |= side < 0.0;
-    distance = fmin(distance, distance_to_line(spot, from, to));
+    distance = fmin(distance, distance_to_line(point, from, to));
   }
   *is_inside = shape->is_filled && shape->count > 2 && has_left != has_right;
   return distance;
 }
 
 /* Returns the share of a pixel that the shape covers, times its opacity. */
-static double coverage(const struct Shape *shape, struct PicturePoint spot) {
+static double coverage(const struct Shape *shape, struct PicturePoint point) {
   const double scale = (double)SIDE / PICTURE_SIZE;
   const struct LookStyle *style = &looks[shape->look];
   bool is_polygon = shape->is_filled && shape->count > 1, is_inside;
-  double distance = distance_to_shape(shape, spot, &is_inside);
+  double distance = distance_to_shape(shape, point, &is_inside);
   double beyond = is_polygon ? (is_inside ? -distance : distance) : distance - fmax(style->width / 2.0, 0.5 / scale);
   return fmin(fmax(0.5 - scale * beyond, 0.0), 1.0) * (is_polygon ? style->opacity : 1.0);
 }
@@ -64,8 +64,8 @@ static void paint_shape(unsigned char *image, const struct Shape *shape) {
   for (int row = (int)clip(scale * (all.least.up - width)); row < clip(scale * (all.most.up + width)); row++)
     for (int column = (int)clip(scale * (all.least.right - width)); column < clip(scale * (all.most.right + width));
          column++) {
-      struct PicturePoint spot = {(column + 0.5) / scale, (row + 0.5) / scale};
-      paint(image + row * ROW + 1 + 3 * column, looks[shape->look].colour, coverage(shape, spot));
+      struct PicturePoint point = {(column + 0.5) / scale, (row + 0.5) / scale};
+      paint(image + row * ROW + 1 + 3 * column, looks[shape->look].colour, coverage(shape, point));
     }
 }
 

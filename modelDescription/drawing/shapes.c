@@ -32,9 +32,9 @@ struct Rectangle rectangle_of(const struct Drawing *drawing) {
   struct Rectangle all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
   for (size_t i = 0; i < drawing->count; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
-      struct PicturePoint spot = drawing->shapes[i].points[j];
-      all.least = (struct PicturePoint){fmin(all.least.right, spot.right), fmin(all.least.up, spot.up)};
-      all.most = (struct PicturePoint){fmax(all.most.right, spot.right), fmax(all.most.up, spot.up)};
+      struct PicturePoint point = drawing->shapes[i].points[j];
+      all.least = (struct PicturePoint){fmin(all.least.right, point.right), fmin(all.least.up, point.up)};
+      all.most = (struct PicturePoint){fmax(all.most.right, point.right), fmax(all.most.up, point.up)};
     }
   return all;
 }
@@ -46,20 +46,20 @@ bool fit_drawing(struct Drawing *drawing) {
   double pixels = (PICTURE_SIZE - 2.0 * margin) / size;
   for (size_t i = 0; i < drawing->count; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
-      struct PicturePoint *spot = &drawing->shapes[i].points[j];
-      spot->right = PICTURE_SIZE / 2.0 + pixels * (spot->right - (all.least.right + all.most.right) / 2.0);
-      spot->up = PICTURE_SIZE / 2.0 - pixels * (spot->up - (all.least.up + all.most.up) / 2.0);
+      struct PicturePoint *point = &drawing->shapes[i].points[j];
+      point->right = PICTURE_SIZE / 2.0 + pixels * (point->right - (all.least.right + all.most.right) / 2.0);
+      point->up = PICTURE_SIZE / 2.0 - pixels * (point->up - (all.least.up + all.most.up) / 2.0);
     }
   return isnormal(size) && isnormal(pixels);
 }
 
-static int compare_spots(const void *first, const void *second) {
+static int compare_points(const void *first, const void *second) {
   const struct PicturePoint *a = first, *b = second;
   if (a->right != b->right) return a->right < b->right ? -1 : 1;
   return (a->up > b->up) - (a->up < b->up);
 }
 
-static double turn(struct PicturePoint a, struct PicturePoint b, struct PicturePoint c) {
+static double orientation(struct PicturePoint a, struct PicturePoint b, struct PicturePoint c) {
   return (b.right - a.right) * (c.up - a.up) - (b.up - a.up) * (c.right - a.right);
 }
 
@@ -73,13 +73,13 @@ static size_t append_half_hull(const struct PicturePoint *points, size_t count, 
   size_t first = length;
   for (size_t i = 0; i < count; i++) {
     struct PicturePoint point = points[backwards ? count - 1 - i : i];
-    while (length >= first + 2 && !(turn(hull[length - 2], hull[length - 1], point) > 0.0)) length--;
+    while (length >= first + 2 && !(orientation(hull[length - 2], hull[length - 1], point) > 0.0)) length--;
     hull[length++] = point;
   }
   return length - 1; /* its last point begins the other chain */
 }
 
 size_t convex_hull(struct PicturePoint *points, size_t count, struct PicturePoint *hull) {
-  qsort(points, count, sizeof *points, compare_spots);
+  qsort(points, count, sizeof *points, compare_points);
   return append_half_hull(points, count, true, hull, append_half_hull(points, count, false, hull, 0));
 }

@@ -4,13 +4,13 @@
 
 enum { ROUND = 24, RINGS = 2 * ROUND }; /* points of a circle, and of both end circles of a cylinder */
 
-struct PicturePoint seen(const struct View *view, const double position[3]) {
-  struct PicturePoint spot = {0.0, 0.0};
+struct PicturePoint projected(const struct View *view, const double position[3]) {
+  struct PicturePoint point = {0.0, 0.0};
   for (int i = 0; i < 3; i++) {
-    spot.right += view->right[i] * position[i];
-    spot.up += view->up[i] * position[i];
+    point.right += view->right[i] * position[i];
+    point.up += view->up[i] * position[i];
   }
-  return spot;
+  return point;
 }
 
 static struct PicturePoint corner(const struct View *view, const struct Solid *solid, const double along[3]) {
@@ -19,7 +19,7 @@ static struct PicturePoint corner(const struct View *view, const struct Solid *s
     position[i] = solid->middle[i];
     for (int axis = 0; axis < 3; axis++) position[i] += along[axis] * solid->half[axis] * solid->axis[axis][i];
   }
-  return seen(view, position);
+  return projected(view, position);
 }
 
 /* Returns the axis of symmetry, whose two other moments of inertia agree to 0.1 %; -1 for none. */
@@ -79,21 +79,21 @@ void append_box(struct Drawing *drawing, const struct View *view, const struct S
 
 /* The outline consists of the points whose tangent planes contain the direction of view. */
 void append_ellipsoid(struct Drawing *drawing, const struct View *view, const struct Solid *solid) {
-  struct PicturePoint spots[ROUND], middle = seen(view, solid->middle);
+  struct PicturePoint points[ROUND], middle = projected(view, solid->middle);
   for (int i = 0; i < ROUND; i++) {
     double angle = 2.0 * acos(-1.0) * i / ROUND, support = 0.0;
-    spots[i] = (struct PicturePoint){0.0, 0.0};
+    points[i] = (struct PicturePoint){0.0, 0.0};
     for (int axis = 0; axis < 3; axis++) {
-      struct PicturePoint direction = seen(view, solid->axis[axis]);
+      struct PicturePoint direction = projected(view, solid->axis[axis]);
       double along = solid->half[axis] * (direction.right * cos(angle) + direction.up * sin(angle));
       support += along * along;
-      spots[i].right += along * solid->half[axis] * direction.right;
-      spots[i].up += along * solid->half[axis] * direction.up;
+      points[i].right += along * solid->half[axis] * direction.right;
+      points[i].up += along * solid->half[axis] * direction.up;
     }
-    spots[i] =
-        (struct PicturePoint){middle.right + spots[i].right / sqrt(support), middle.up + spots[i].up / sqrt(support)};
+    points[i] =
+        (struct PicturePoint){middle.right + points[i].right / sqrt(support), middle.up + points[i].up / sqrt(support)};
   }
-  append_filled(drawing, spots, ROUND);
+  append_filled(drawing, points, ROUND);
 }
 
 bool is_solid(const struct Body *body) {
@@ -102,7 +102,7 @@ bool is_solid(const struct Body *body) {
 
 void append_solid(struct Drawing *drawing, const struct View *view, const struct Model *model, const struct Body *body,
                   const double *values) {
-  const struct Matrix *turn = &model->mechanism.frames[body->frame].pose.rotation;
+  const struct Matrix *orientation = &model->mechanism.frames[body->frame].pose.rotation;
   struct Solid solid;
   double moment[3], mass = values[body->mass.node], sum = 0.0;
   for (int i = 0; i < 3; i++) {
@@ -110,7 +110,7 @@ void append_solid(struct Drawing *drawing, const struct View *view, const struct
     solid.middle[i] = values[body->position[i].node];
     sum += moment[i] + fabs(solid.middle[i]);
     for (int axis = 0; axis < 3; axis++) {
-      solid.axis[axis][i] = values[turn->row[i].along[axis]];
+      solid.axis[axis][i] = values[orientation->row[i].along[axis]];
       sum += fabs(solid.axis[axis][i]);
     }
   }

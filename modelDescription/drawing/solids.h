@@ -11,7 +11,7 @@ struct View {
 };
 
 /* Returns the projection of a position. */
-struct PicturePoint seen(const struct View *view, const double position[3]);
+struct PicturePoint projected(const struct View *view, const double position[3]);
 
 /* True if the body has an inertia tensor, and so an extent in space. */
 bool is_solid(const struct Body *body);

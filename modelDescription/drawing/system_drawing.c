@@ -46,18 +46,19 @@ static struct View view_of(const struct Model *model, enum Plane plane) {
   return view;
 }
 
-static struct PicturePoint spot_of(const struct VisibleParts *sight, size_t thing) {
-  const Node *position = sight->samples.things[thing].position;
-  const double *values = sight->values;
-  return seen(&sight->view, (double[]){values[position[0]], values[position[1]], values[position[2]]});
+static struct PicturePoint picture_point_of(const struct VisibleParts *visible, size_t object) {
+  const Node *position = visible->samples.objects[object].position;
+  const double *values = visible->values;
+  return projected(&visible->view, (double[]){values[position[0]], values[position[1]], values[position[2]]});
 }
 
 /* Returns the position of a point given in the axes of a planar body, or relative to another object. */
-static struct PicturePoint spot_on(const struct VisibleParts *sight, size_t thing, double x, double y) {
-  const struct SceneObject *body = &sight->samples.things[thing];
-  double angle = body->is_planar ? sight->values[body->angle] : 0.0;
-  struct PicturePoint spot = spot_of(sight, thing);
-  return (struct PicturePoint){spot.right + x * cos(angle) - y * sin(angle), spot.up + x * sin(angle) + y * cos(angle)};
+static struct PicturePoint point_on_picture(const struct VisibleParts *visible, size_t object, double x, double y) {
+  const struct SceneObject *body = &visible->samples.objects[object];
+  double angle = body->is_planar ? visible->values[body->angle] : 0.0;
+  struct PicturePoint point = picture_point_of(visible, object);
+  return (struct PicturePoint){point.right + x * cos(angle) - y * sin(angle),
+                               point.up + x * sin(angle) + y * cos(angle)};
 }
 
 /* Appends a planar body as a uniform bar of its moment of inertia m l^2/12. */
@@ -71,10 +72,10 @@ static void append_bar(struct Drawing *drawing, const struct Body *body, struct 
 }
 
 /* Returns the projection of a point onto the surface. */
-static struct PicturePoint foot_of(const struct SceneSurface *surface, struct PicturePoint spot) {
+static struct PicturePoint projection_onto(const struct SceneSurface *surface, struct PicturePoint point) {
   double height =
-      (spot.right - surface->point[0]) * surface->normal[0] + (spot.up - surface->point[1]) * surface->normal[1];
-  return (struct PicturePoint){spot.right - height * surface->normal[0], spot.up - height * surface->normal[1]};
+      (point.right - surface->point[0]) * surface->normal[0] + (point.up - surface->point[1]) * surface->normal[1];
+  return (struct PicturePoint){point.right - height * surface->normal[0], point.up - height * surface->normal[1]};
 }
 
 /* Appends a hatched line, as long as the objects above it; short for a stop. */
@@ -84,7 +85,7 @@ static void append_surface(struct Drawing *drawing, const struct SceneSurface *s
   double along[2] = {surface->normal[1], -surface->normal[0]}, low = -half, high = half;
   for (size_t i = 0; i < drawing->count && !surface->is_stop; i++)
     for (size_t j = 0; j < drawing->shapes[i].count; j++) {
-      struct PicturePoint foot = foot_of(surface, drawing->shapes[i].points[j]);
+      struct PicturePoint foot = projection_onto(surface, drawing->shapes[i].points[j]);
       double offset = (foot.right - surface->point[0]) * along[0] + (foot.up - surface->point[1]) * along[1];
       low = fmin(low, offset - 0.12 * size);
       high = fmax(high, offset + 0.12 * size);
@@ -120,81 +121,83 @@ static void append_plane(struct Drawing *drawing, const struct View *view, const
   for (int k = 0; k < 5; k++) {
     double a = k == 1 || k == 2 ? half : -half, b = k == 2 || k == 3 ? half : -half;
     for (int i = 0; i < 3; i++) corner[i] = surface->point[i] + a * first[i] + b * second[i];
-    corners[k] = seen(view, corner);
+    corners[k] = projected(view, corner);
   }
   append_shape(drawing, GROUND, true, corners, 4);
   append_shape(drawing, GROUND, false, corners, 5);
 }
 
-static bool is_particle(const struct SceneObject *thing) {
-  return thing->body != NULL && !thing->is_planar && !is_solid(thing->body);
+static bool is_particle(const struct SceneObject *object) {
+  return object->body != NULL && !object->is_planar && !is_solid(object->body);
 }
 
 /* True if a rod or a joint connects the object, or if it is not a particle. */
-static bool is_attached(const struct VisibleParts *sight, size_t thing) {
-  const struct Connections *connections = &sight->connections;
-  bool attached = !is_particle(&sight->samples.things[thing]);
+static bool is_attached(const struct VisibleParts *visible, size_t object) {
+  const struct Connections *connections = &visible->connections;
+  bool attached = !is_particle(&visible->samples.objects[object]);
   for (size_t k = 0; k < connections->rod_count; k++)
-    attached |= connections->rods[k].from == thing || connections->rods[k].to == thing;
-  for (size_t k = 0; k < connections->joint_count; k++) attached |= connections->joints[k].with == thing;
+    attached |= connections->rods[k].from == object || connections->rods[k].to == object;
+  for (size_t k = 0; k < connections->joint_count; k++) attached |= connections->joints[k].with == object;
   return attached;
 }
 
 /* Appends the base's axes, and lines from the origin to unconnected objects. */
-static void append_axes(struct Drawing *drawing, const struct VisibleParts *sight, double size) {
+static void append_axes(struct Drawing *drawing, const struct VisibleParts *visible, double size) {
   struct PicturePoint origin = {0.0, 0.0};
-  for (int axis = 0; axis < (sight->is_in_space ? 3 : 2); axis++) {
+  for (int axis = 0; axis < (visible->is_in_space ? 3 : 2); axis++) {
     double tip[3] = {0.0, 0.0, 0.0};
     tip[axis] = 0.3 * size;
-    append_line(drawing, AXIS, origin, seen(&sight->view, tip));
+    append_line(drawing, AXIS, origin, projected(&visible->view, tip));
   }
-  for (size_t i = 1; i < sight->samples.thing_count && sight->samples.thing_count <= MOST_WAYS; i++)
-    if (!is_attached(sight, i)) append_line(drawing, AXIS, origin, spot_of(sight, i));
+  for (size_t i = 1; i < visible->samples.object_count && visible->samples.object_count <= MOST_WAYS; i++)
+    if (!is_attached(visible, i)) append_line(drawing, AXIS, origin, picture_point_of(visible, i));
 }
 
 /* Appends what lies behind the dots: solids, rods and bars, and lines from bodies to their joints. */
-static void append_bodies(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
-  const struct Samples *samples = &sight->samples;
-  const struct Connections *connections = &sight->connections;
+static void append_bodies(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
+  const struct Samples *samples = &visible->samples;
+  const struct Connections *connections = &visible->connections;
   for (size_t i = 0; i < model->mechanism.shape_count; i++)
-    append_drawn_shape(drawing, &sight->view, model, &model->mechanism.shapes[i], sight->values);
-  for (size_t i = 0; i < samples->thing_count; i++)
-    if (samples->things[i].body != NULL && is_solid(samples->things[i].body) &&
-        !has_drawn_shape(model, samples->things[i].body))
-      append_solid(drawing, &sight->view, model, samples->things[i].body, sight->values);
+    append_drawn_shape(drawing, &visible->view, model, &model->mechanism.shapes[i], visible->values);
+  for (size_t i = 0; i < samples->object_count; i++)
+    if (samples->objects[i].body != NULL && is_solid(samples->objects[i].body) &&
+        !has_drawn_shape(model, samples->objects[i].body))
+      append_solid(drawing, &visible->view, model, samples->objects[i].body, visible->values);
   if (has_described_lines(&model->drawing)) return;
   for (size_t i = 0; i < connections->rod_count; i++)
-    append_line(drawing, LINK, spot_of(sight, connections->rods[i].from), spot_of(sight, connections->rods[i].to));
+    append_line(drawing, LINK, picture_point_of(visible, connections->rods[i].from),
+                picture_point_of(visible, connections->rods[i].to));
   for (size_t i = 0; i < connections->joint_count; i++)
-    append_line(drawing, LINK, spot_of(sight, connections->joints[i].of),
-                spot_on(sight, connections->joints[i].of, connections->joints[i].coordinates[0],
-                        connections->joints[i].coordinates[1]));
-  for (size_t i = 0; i < samples->thing_count; i++)
-    if (samples->things[i].is_planar) append_bar(drawing, samples->things[i].body, spot_of(sight, i), sight->values);
+    append_line(drawing, LINK, picture_point_of(visible, connections->joints[i].of),
+                point_on_picture(visible, connections->joints[i].of, connections->joints[i].coordinates[0],
+                                 connections->joints[i].coordinates[1]));
+  for (size_t i = 0; i < samples->object_count; i++)
+    if (samples->objects[i].is_planar)
+      append_bar(drawing, samples->objects[i].body, picture_point_of(visible, i), visible->values);
 }
 
-static void append_pivot(struct Drawing *drawing, struct PicturePoint spot) {
-  append_shape(drawing, BASE, true, &spot, 1);
-  append_shape(drawing, HOLE, true, &spot, 1);
+static void append_pivot(struct Drawing *drawing, struct PicturePoint point) {
+  append_shape(drawing, BASE, true, &point, 1);
+  append_shape(drawing, HOLE, true, &point, 1);
 }
 
 /* Appends dots and joints; the origin last, on top. With lines, only dots of particles that have no shape. */
-static void append_points(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
-  const struct Samples *samples = &sight->samples;
+static void append_points(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
+  const struct Samples *samples = &visible->samples;
   bool is_guessed = !has_described_lines(&model->drawing);
-  for (size_t i = samples->thing_count; i-- > 1;) {
-    const struct SceneObject *thing = &samples->things[i];
-    struct PicturePoint spot = spot_of(sight, i);
-    bool is_ball = is_particle(thing) && thing->body->mass.node != ZERO && samples->thing_count <= MOST_DOTS;
-    bool is_shown = is_guessed || (is_ball && !has_drawn_shape(model, thing->body));
-    if (!thing->is_planar && is_shown) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &spot, 1);
+  for (size_t i = samples->object_count; i-- > 1;) {
+    const struct SceneObject *object = &samples->objects[i];
+    struct PicturePoint point = picture_point_of(visible, i);
+    bool is_ball = is_particle(object) && object->body->mass.node != ZERO && samples->object_count <= MOST_DOTS;
+    bool is_shown = is_guessed || (is_ball && !has_drawn_shape(model, object->body));
+    if (!object->is_planar && is_shown) append_shape(drawing, is_ball ? PARTICLE : JOINT, true, &point, 1);
   }
   if (!is_guessed) return;
-  for (size_t i = 0; i < sight->connections.joint_count; i++) {
-    const struct SceneJoint *joint = &sight->connections.joints[i];
-    append_pivot(drawing, spot_on(sight, joint->of, joint->coordinates[0], joint->coordinates[1]));
+  for (size_t i = 0; i < visible->connections.joint_count; i++) {
+    const struct SceneJoint *joint = &visible->connections.joints[i];
+    append_pivot(drawing, point_on_picture(visible, joint->of, joint->coordinates[0], joint->coordinates[1]));
   }
-  append_pivot(drawing, spot_of(sight, 0));
+  append_pivot(drawing, picture_point_of(visible, 0));
 }
 
 /* True if no earlier contact has the same plane. */
@@ -213,20 +216,20 @@ static bool is_first(const struct Surfaces *surfaces, size_t surface) {
 }
 
 /* Returns the surface with its point nearest to the object's start position. */
-static struct SceneSurface met_surface(const struct VisibleParts *sight, struct SceneSurface met) {
-  const Node *position = sight->samples.things[met.thing].position;
+static struct SceneSurface surface_at_contact(const struct VisibleParts *visible, struct SceneSurface met) {
+  const Node *position = visible->samples.objects[met.object].position;
   double height = 0.0;
   if (met.is_stop) return met;
-  for (int axis = 0; axis < 3; axis++) height += (sight->values[position[axis]] - met.point[axis]) * met.normal[axis];
-  for (int axis = 0; axis < 3; axis++) met.point[axis] = sight->values[position[axis]] - height * met.normal[axis];
+  for (int axis = 0; axis < 3; axis++) height += (visible->values[position[axis]] - met.point[axis]) * met.normal[axis];
+  for (int axis = 0; axis < 3; axis++) met.point[axis] = visible->values[position[axis]] - height * met.normal[axis];
   return met;
 }
 
-static void append_surfaces(struct Drawing *drawing, const struct VisibleParts *sight, double size) {
-  for (size_t i = 0; i < sight->surfaces.count; i++) {
-    struct SceneSurface surface = met_surface(sight, sight->surfaces.items[i]);
-    if (!is_first(&sight->surfaces, i)) continue;
-    if (sight->is_in_space) append_plane(drawing, &sight->view, &surface, size);
+static void append_surfaces(struct Drawing *drawing, const struct VisibleParts *visible, double size) {
+  for (size_t i = 0; i < visible->surfaces.count; i++) {
+    struct SceneSurface surface = surface_at_contact(visible, visible->surfaces.items[i]);
+    if (!is_first(&visible->surfaces, i)) continue;
+    if (visible->is_in_space) append_plane(drawing, &visible->view, &surface, size);
     else append_surface(drawing, &surface, size);
   }
 }
@@ -243,11 +246,11 @@ static bool is_finite(const struct Rectangle *all) {
 }
 
 /* Drawings of lines may lie in the plane of x and z; surfaces and joints that are guessed need space for z. */
-static enum Plane plane_of(const struct VisibleParts *sight, const struct Model *model) {
+static enum Plane plane_of(const struct VisibleParts *visible, const struct Model *model) {
   bool has_y = false, has_z = false;
-  for (size_t i = 0; i < sight->samples.thing_count; i++) {
-    has_y |= sight->samples.things[i].position[1] != ZERO;
-    has_z |= sight->samples.things[i].position[2] != ZERO;
+  for (size_t i = 0; i < visible->samples.object_count; i++) {
+    has_y |= visible->samples.objects[i].position[1] != ZERO;
+    has_z |= visible->samples.objects[i].position[2] != ZERO;
   }
   for (size_t i = 0; i < 2 * model->drawing.count; i++) {
     has_y |= model->drawing.lines[i / 2].ends[i % 2].position[1] != ZERO;
@@ -257,28 +260,28 @@ static enum Plane plane_of(const struct VisibleParts *sight, const struct Model 
   return has_y || !has_described_lines(&model->drawing) ? IN_SPACE : IN_XZ;
 }
 
-static struct VisibleParts sight_of(const struct Model *model) {
+static struct VisibleParts visible_parts_of(const struct Model *model) {
   struct Configurations everything = configurations_of(model, NULL);
-  struct VisibleParts sight = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
-  sight.connections = find_connections(&sight.samples);
-  sight.surfaces = find_surfaces(&sight.samples);
-  if (sight.values == NULL) sight.values = graph_evaluate(model->graph, start_values(model));
-  sight.line_values = values_of_lines(model, sight.values);
-  enum Plane plane = plane_of(&sight, model);
-  sight.is_in_space = plane != IN_XY;
-  sight.view = view_of(model, plane);
-  return sight;
+  struct VisibleParts visible = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
+  visible.connections = find_connections(&visible.samples);
+  visible.surfaces = find_surfaces(&visible.samples);
+  if (visible.values == NULL) visible.values = graph_evaluate(model->graph, start_values(model));
+  visible.line_values = values_of_lines(model, visible.values);
+  enum Plane plane = plane_of(&visible, model);
+  visible.is_in_space = plane != IN_XY;
+  visible.view = view_of(model, plane);
+  return visible;
 }
 
 /* Appends the ends of lines as dots, which gives the drawing its size. */
-static void append_ends(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
+static void append_ends(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
   for (size_t i = 0; i < 2 * model->drawing.count; i++) {
     const struct DrawnLine *line = &model->drawing.lines[i / 2];
     double position[3];
     if (i % 2 == 1 && !has_two_ends(line)) continue;
-    position_of_end(&line->ends[i % 2], sight->line_values, position);
-    struct PicturePoint spot = seen(&sight->view, position);
-    if (isfinite(spot.right) && isfinite(spot.up)) append_shape(drawing, JOINT, true, &spot, 1);
+    position_of_end(&line->ends[i % 2], visible->line_values, position);
+    struct PicturePoint point = projected(&visible->view, position);
+    if (isfinite(point.right) && isfinite(point.up)) append_shape(drawing, JOINT, true, &point, 1);
   }
 }
 
@@ -287,60 +290,60 @@ static double size_of(const struct Rectangle *all) {
 }
 
 /* Appends the planes among the shapes, below the last object. */
-static void append_planes(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model,
+static void append_planes(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model,
                           double size) {
   for (size_t i = 0; i < model->mechanism.shape_count; i++) {
-    struct SceneSurface surface = {.thing = sight->samples.thing_count - 1};
-    if (!find_drawn_plane(model, &model->mechanism.shapes[i], sight->values, surface.point, surface.normal)) continue;
-    surface = met_surface(sight, surface);
-    if (sight->is_in_space) append_plane(drawing, &sight->view, &surface, size);
+    struct SceneSurface surface = {.object = visible->samples.object_count - 1};
+    if (!find_drawn_plane(model, &model->mechanism.shapes[i], visible->values, surface.point, surface.normal)) continue;
+    surface = surface_at_contact(visible, surface);
+    if (visible->is_in_space) append_plane(drawing, &visible->view, &surface, size);
     else append_surface(drawing, &surface, size);
   }
 }
 
-static void append_lines(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model,
+static void append_lines(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model,
                          double size) {
   for (size_t i = 0; i < model->drawing.count; i++)
-    append_drawn_line(drawing, &sight->view, &model->drawing.lines[i], sight->line_values, size);
+    append_drawn_line(drawing, &visible->view, &model->drawing.lines[i], visible->line_values, size);
 }
 
 /* Draws what the author describes: lines, and shapes on them. Returns false if there is nothing to see. */
-static bool draw_lines(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
+static bool draw_lines(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
   struct Drawing bodies = {.count = 0};
-  append_bodies(&bodies, sight, model);
-  append_points(&bodies, sight, model);
+  append_bodies(&bodies, visible, model);
+  append_points(&bodies, visible, model);
   struct Drawing extent = {.count = 0};
   append_drawing(&extent, &bodies);
-  append_ends(&extent, sight, model);
+  append_ends(&extent, visible, model);
   struct Rectangle all = rectangle_of(&extent);
   if (!is_finite(&all)) return false;
-  append_planes(drawing, sight, model, size_of(&all));
-  append_lines(drawing, sight, model, size_of(&all));
+  append_planes(drawing, visible, model, size_of(&all));
+  append_lines(drawing, visible, model, size_of(&all));
   append_drawing(drawing, &bodies);
   return true;
 }
 
 /* Draws rods, joints and surfaces that are found by samples. Returns false if there is nothing to see. */
-static bool draw_guesses(struct Drawing *drawing, const struct VisibleParts *sight, const struct Model *model) {
-  struct Drawing seen_things = {.count = 0};
-  append_bodies(&seen_things, sight, model);
-  append_points(&seen_things, sight, model);
-  struct Rectangle all = rectangle_of(&seen_things);
-  if (sight->samples.thing_count <= 1 || !is_finite(&all)) return false;
-  append_surfaces(&seen_things, sight, size_of(&all));
-  append_axes(drawing, sight, size_of(&all));
-  append_lines(drawing, sight, model, size_of(&all));
-  append_drawing(drawing, &seen_things);
+static bool draw_guesses(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
+  struct Drawing visible_objects = {.count = 0};
+  append_bodies(&visible_objects, visible, model);
+  append_points(&visible_objects, visible, model);
+  struct Rectangle all = rectangle_of(&visible_objects);
+  if (visible->samples.object_count <= 1 || !is_finite(&all)) return false;
+  append_surfaces(&visible_objects, visible, size_of(&all));
+  append_axes(drawing, visible, size_of(&all));
+  append_lines(drawing, visible, model, size_of(&all));
+  append_drawing(drawing, &visible_objects);
   return true;
 }
 
 static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
-  struct VisibleParts sight = sight_of(model);
-  bool has_drawn = has_described_lines(&model->drawing) && draw_lines(drawing, &sight, model);
-  bool is_seen = has_drawn || draw_guesses(drawing, &sight, model);
-  release_samples(&sight.samples);
-  release(sight.values);
-  release(sight.line_values);
+  struct VisibleParts visible = visible_parts_of(model);
+  bool has_drawn = has_described_lines(&model->drawing) && draw_lines(drawing, &visible, model);
+  bool is_seen = has_drawn || draw_guesses(drawing, &visible, model);
+  release_samples(&visible.samples);
+  release(visible.values);
+  release(visible.line_values);
   return is_seen && fit_drawing(drawing);
 }
 

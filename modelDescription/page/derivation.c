@@ -56,7 +56,7 @@ static struct Derivation derivation_of(struct Page *page) {
 static void write_freedom(const struct Derivation *derivation) {
   const struct Model *model = derivation->model;
   size_t constraints = permanent_constraint_count(model), rank = constraint_rank(model, derivation->equations);
-  size_t given = model->given.prescribed_motion_count, free_count = model->coordinates.count - given;
+  size_t given = model->prescribed.motion_count, free_count = model->coordinates.count - given;
   page_step(derivation->page, "Degrees of freedom");
   char *text = format_text("Coordinates: %zu.", model->coordinates.count);
   if (given > 0) text = format_text("%s Prescribed ones: %zu.", text, given);
@@ -210,14 +210,14 @@ static void write_state_space(const struct Derivation *derivation) {
 static bool conserves_energy(const struct Page *page) {
   const struct Model *model = page->model;
   Node whole = subtract(model->graph, model->energies.kinetic.node, model->energies.potential.node);
-  return !model->forces.any && !model->energies.driven && model->given.constraint == NULL &&
+  return !model->forces.any && !model->energies.driven && model->prescribed.constraint == NULL &&
          page->summary->is_autonomous && !graph_depends_on(model->graph, whole, INPUT);
 }
 
 /* True if the momentum dL/dv of a coordinate is conserved: a cyclic coordinate on which nothing else acts. */
 static bool is_cyclic(const struct Derivation *derivation, size_t i) {
   struct Graph *graph = derivation->model->graph;
-  return !derivation->model->given.prescribed_motions[i].given && is_unconstrained(derivation->equations, i) &&
+  return !derivation->model->prescribed.motions[i].is_prescribed && is_unconstrained(derivation->equations, i) &&
          simplify_fraction(graph, derivation->gradient[i]) == ZERO &&
          simplify_fraction(graph, derivation->force[i]) == ZERO;
 }

@@ -51,7 +51,7 @@ static void write_sections(struct Page *page) {
 }
 
 /* Writes the text without escapes, which browsers would not decode here. The comments make the page valid XML, too. */
-static void write_as_it_is(const struct Page *page, const char *name, const char *text) {
+static void write_verbatim(const struct Page *page, const char *name, const char *text) {
   xmlTextWriterStartElement(page->writer, BAD_CAST name);
   xmlTextWriterWriteFormatRaw(page->writer, "/*<![CDATA[*/%s/*]]>*/", text);
   xmlTextWriterEndElement(page->writer);
@@ -80,7 +80,7 @@ static void write_head(const struct Page *page) {
     xmlTextWriterEndElement(page->writer);
   }
   page_element(page, "title", page->model->name);
-  write_as_it_is(page, "style", page_style);
+  write_verbatim(page, "style", page_style);
   xmlTextWriterEndElement(page->writer);
 }
 
@@ -120,7 +120,7 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
   xmlTextWriterWriteRaw(writer, xmlBufferContent(sections));
   write_origin(page);
   xmlTextWriterEndElement(writer);
-  write_as_it_is(page, "script", page_script);
+  write_verbatim(page, "script", page_script);
   xmlTextWriterEndElement(writer);
   xmlTextWriterEndElement(writer);
 }

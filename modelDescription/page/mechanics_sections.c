@@ -5,10 +5,10 @@
 
 /* Returns the balance of energy that totalEnergy obeys, see energies.h. */
 static const char *balance_of(const struct Model *model, bool autonomous) {
-  if (work_is_of_everything(model))
+  if (work_includes_all_forces(model))
     return "totalEnergy changes by nonConservativeWork alone, which includes the work of what moves states and "
            "constraints: its derivative is P.";
-  if (model->given.constraint != NULL)
+  if (model->prescribed.constraint != NULL)
     return "A constraint depends on time or inputs: its force does work, so that totalEnergy is not constant even "
            "without other forces.";
   if (!model->energies.driven && autonomous)
@@ -104,7 +104,7 @@ static void write_reactions(struct Page *page) {
     page_paragraph(
         page, "The force along a displacement is that of the system against the support that keeps the displacement "
               "at 0, from Lagrange's equation of the displacement: the tension of a rod that it makes longer.");
-  if (page->model->given.prescribed_motion_count > 0)
+  if (page->model->prescribed.motion_count > 0)
     page_paragraph(page, "The force of a prescribed motion is that on its coordinate, from Lagrange's equation of the "
                          "coordinate.");
 }
@@ -121,8 +121,8 @@ void write_mechanics(struct Page *page) {
   if (!page->model->forces.any) return;
   page_heading(page, "Power of the non-conservative forces");
   page_equation(page, "P", summary->power);
-  if (work_is_of_everything(page->model)) return;
-  if (page->model->forces.point_count > 0 || page->model->given.prescribed_motion_count > 0)
+  if (work_includes_all_forces(page->model)) return;
+  if (page->model->forces.point_count > 0 || page->model->prescribed.motion_count > 0)
     page_paragraph(page,
                    "It is the sum of force times velocity over the generalized forces and the dissipation, and of F . "
                    "dr/dt over the Cartesian forces, where dr/dt is the whole velocity of the point they act on. The "

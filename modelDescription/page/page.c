@@ -93,8 +93,8 @@ void page_step_equation(const struct Page *page, const char *left, Node right) {
   page_step_texts(page, left, right_side(page, left, right));
 }
 
-void page_rest(const struct Page *page, size_t count, size_t shown, const char *things) {
+void page_rest(const struct Page *page, size_t count, size_t shown, const char *objects) {
   if (count == shown) return;
-  char *text = format_text("%zu further %s are not shown.", count - shown, things);
+  char *text = format_text("%zu further %s are not shown.", count - shown, objects);
   page_paragraph(page, text);
 }

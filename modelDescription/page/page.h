@@ -56,6 +56,6 @@ void page_step_equation(const struct Page *page, const char *left, Node right);
 void page_step_texts(const struct Page *page, const char *left, const char *right);
 
 /* Writes how many objects of a kind the page omits; nothing if none. */
-void page_rest(const struct Page *page, size_t count, size_t shown, const char *things);
+void page_rest(const struct Page *page, size_t count, size_t shown, const char *objects);
 
 #endif

@@ -66,8 +66,8 @@ struct Configurations configurations_of(const struct Model *model, const struct 
 }
 
 static bool can_move(const struct Model *model, size_t coordinate) {
-  bool is_driven = model->given.prescribed_motion_count > 0 && model->given.prescribed_motions[coordinate].given;
-  return !is_driven && !model->coordinates.items[coordinate].is_fixed;
+  bool is_prescribed = model->prescribed.motion_count > 0 && model->prescribed.motions[coordinate].is_prescribed;
+  return !is_prescribed && !model->coordinates.items[coordinate].is_fixed;
 }
 
 /*

@@ -19,7 +19,7 @@
 #include "least_squares.h"
 
 /* above this, objects are compared with the base and their neighbours only, since pairs grow quadratically */
-enum { MOST_THINGS = 60 };
+enum { MOST_OBJECTS = 60 };
 
 /* Coefficients of constraints below NO_FORCE are rounding errors; rods shorter than NO_LENGTH, in m, are not drawn. */
 static const double NO_FORCE = 1e-6, NO_LENGTH = 1e-9;
@@ -28,7 +28,7 @@ static double distance(const struct Samples *samples, size_t sample, size_t firs
   const double *values = samples->values[sample];
   double sum = 0.0;
   for (int axis = 0; axis < 3; axis++) {
-    double way = values[samples->things[second].position[axis]] - values[samples->things[first].position[axis]];
+    double way = values[samples->objects[second].position[axis]] - values[samples->objects[first].position[axis]];
     sum += way * way;
   }
   return sqrt(sum);
@@ -38,10 +38,10 @@ static double constraint_value(const struct Samples *samples, size_t sample, siz
   return samples->values[sample][samples->model->constraints.items[samples->constraints[k]].node];
 }
 
-static bool moves(const struct Samples *samples, size_t thing) {
+static bool moves(const struct Samples *samples, size_t object) {
   for (int axis = 0; axis < 3; axis++)
-    if (samples->values[1][samples->things[thing].position[axis]] !=
-        samples->values[0][samples->things[thing].position[axis]])
+    if (samples->values[1][samples->objects[object].position[axis]] !=
+        samples->values[0][samples->objects[object].position[axis]])
       return true;
   return false;
 }
@@ -86,18 +86,18 @@ static int by_length(const void *first, const void *second) {
   return a->to < b->to ? -1 : a->to > b->to;
 }
 
-static size_t group_of(const size_t *groups, size_t thing) {
-  while (groups[thing] != thing) thing = groups[thing];
-  return thing;
+static size_t group_of(const size_t *groups, size_t object) {
+  while (groups[object] != object) object = groups[object];
+  return object;
 }
 
 /*
  * Keeps the shortest rods that connect everything (a minimum spanning forest by Kruskal's algorithm), and all rods of
  * constraints; removes those of length 0.
  */
-static void keep_shortest(struct Connections *connections, size_t thing_count) {
-  size_t *groups = allocate(thing_count, sizeof *groups), kept = 0;
-  for (size_t i = 0; i < thing_count; i++) groups[i] = i;
+static void keep_shortest(struct Connections *connections, size_t object_count) {
+  size_t *groups = allocate(object_count, sizeof *groups), kept = 0;
+  for (size_t i = 0; i < object_count; i++) groups[i] = i;
   if (connections->rod_count > 0)
     qsort(connections->rods, connections->rod_count, sizeof *connections->rods, by_length);
   for (size_t i = 0; i < connections->rod_count; i++) {
@@ -129,11 +129,11 @@ static void fill_joint(const struct Samples *samples, const struct SceneJoint *j
       const double *values = samples->values[k];
       const size_t pair[2] = {joint->of, joint->with};
       for (int side = 0; side < 2; side++) {
-        const struct SceneObject *thing = &samples->things[pair[side]];
-        double sign = side == 0 ? 1.0 : -1.0, angle = thing->is_planar ? values[thing->angle] : 0.0;
+        const struct SceneObject *object = &samples->objects[pair[side]];
+        double sign = side == 0 ? 1.0 : -1.0, angle = object->is_planar ? values[object->angle] : 0.0;
         row[2 * side] = sign * (axis == 0 ? cos(angle) : sin(angle));
         row[2 * side + 1] = sign * (axis == 0 ? -sin(angle) : cos(angle));
-        row[system->columns] -= sign * values[thing->position[axis]];
+        row[system->columns] -= sign * values[object->position[axis]];
       }
       for (size_t c = 0; c < samples->constraint_count; c++)
         row[4 + 2 * c + (size_t)axis] = constraint_value(samples, k, c);
@@ -170,7 +170,8 @@ bool find_joint(const struct Samples *samples, struct SceneJoint *joint) {
   fill_joint(samples, joint, &system);
   if (!least_squares_solve(&system, JOINT_COORDINATES, solution)) return false;
   for (int i = 0; i < JOINT_COORDINATES; i++) joint->coordinates[i] = solution[i];
-  bool is_loose = joint->with != 0 && !samples->things[joint->with].is_planar && hypot(solution[2], solution[3]) > 1e-9;
+  bool is_loose =
+      joint->with != 0 && !samples->objects[joint->with].is_planar && hypot(solution[2], solution[3]) > 1e-9;
   if (is_loose) return false; /* a particle has no other points */
   set_forces(samples, solution + JOINT_COORDINATES, joint);
   return true;
@@ -185,21 +186,21 @@ static void try_joint(struct Connections *connections, const struct Samples *sam
 
 /* True if the pair is tested. Objects in a frame are connected only with that. */
 static bool are_compared(const struct Samples *samples, size_t first, size_t second) {
-  const struct SceneObject *a = &samples->things[first], *b = &samples->things[second];
+  const struct SceneObject *a = &samples->objects[first], *b = &samples->objects[second];
   if (a->frame != 0 || b->frame != 0) return b->frame == first || (a->frame == second && second != 0);
-  return samples->thing_count <= MOST_THINGS || first == 0 || second == first + 1;
+  return samples->object_count <= MOST_OBJECTS || first == 0 || second == first + 1;
 }
 
 struct Connections find_connections(const struct Samples *samples) {
   struct Connections connections = {.rod_count = 0};
-  for (size_t i = 0; i < samples->thing_count; i++)
-    for (size_t j = i + 1; j < samples->thing_count; j++) {
+  for (size_t i = 0; i < samples->object_count; i++)
+    for (size_t j = i + 1; j < samples->object_count; j++) {
       if (!are_compared(samples, i, j)) continue;
-      bool is_planar = samples->things[i].is_planar || samples->things[j].is_planar;
-      if (samples->things[j].is_planar) try_joint(&connections, samples, j, i);
-      else if (samples->things[i].is_planar) try_joint(&connections, samples, i, j);
+      bool is_planar = samples->objects[i].is_planar || samples->objects[j].is_planar;
+      if (samples->objects[j].is_planar) try_joint(&connections, samples, j, i);
+      else if (samples->objects[i].is_planar) try_joint(&connections, samples, i, j);
       if (!is_planar) try_rod(&connections, samples, i, j);
     }
-  keep_shortest(&connections, samples->thing_count);
+  keep_shortest(&connections, samples->object_count);
   return connections;
 }

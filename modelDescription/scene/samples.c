@@ -22,43 +22,43 @@ static Node component(const struct Model *model, const char *name, const char *a
 }
 
 /* Appends an object with its position. A body outside frames has its own components, where given. */
-static void append_thing(struct Samples *samples, struct SceneObject thing) {
-  const struct Body *body = thing.body;
+static void append_object(struct Samples *samples, struct SceneObject object) {
+  const struct Body *body = object.body;
   bool is_free = body != NULL && !body->is_in_frame;
-  for (int axis = 0; axis < 3 && thing.name != NULL; axis++)
+  for (int axis = 0; axis < 3 && object.name != NULL; axis++)
     if (!is_free || body->has_position[axis])
-      thing.position[axis] = is_free ? body->position[axis].node : component(samples->model, thing.name, axes[axis]);
-  samples->things = make_room(samples->things, samples->thing_count, sizeof *samples->things);
-  samples->things[samples->thing_count++] = thing;
+      object.position[axis] = is_free ? body->position[axis].node : component(samples->model, object.name, axes[axis]);
+  samples->objects = make_room(samples->objects, samples->object_count, sizeof *samples->objects);
+  samples->objects[samples->object_count++] = object;
 }
 
 /* Returns the index of the object of a frame, which may be a body; 0 for the base. */
-static size_t thing_of_frame(const struct Samples *samples, size_t frame) {
-  size_t thing = samples->thing_count;
-  while (frame != BASE && --thing > 0)
-    if (strcmp(samples->things[thing].name, samples->model->mechanism.frames[frame].name) == 0) return thing;
+static size_t object_of_frame(const struct Samples *samples, size_t frame) {
+  size_t object = samples->object_count;
+  while (frame != BASE && --object > 0)
+    if (strcmp(samples->objects[object].name, samples->model->mechanism.frames[frame].name) == 0) return object;
   return 0;
 }
 
-static void find_things(struct Samples *samples) {
+static void find_objects(struct Samples *samples) {
   const struct Mechanism *mechanism = &samples->model->mechanism;
-  append_thing(samples, (struct SceneObject){.name = NULL});
+  append_object(samples, (struct SceneObject){.name = NULL});
   for (size_t i = BASE + 1; i < mechanism->frame_count; i++)
     if (!mechanism->frames[i].is_of_body)
-      append_thing(samples, (struct SceneObject){.name = mechanism->frames[i].name});
-  size_t first_body = samples->thing_count;
+      append_object(samples, (struct SceneObject){.name = mechanism->frames[i].name});
+  size_t first_body = samples->object_count;
   for (size_t i = 0; i < mechanism->body_count; i++) {
     const struct Body *body = &mechanism->bodies[i];
-    append_thing(samples,
-                 (struct SceneObject){
-                     .name = body->name, .body = body, .angle = body->angle.node, .is_planar = body->has_angle});
+    append_object(samples,
+                  (struct SceneObject){
+                      .name = body->name, .body = body, .angle = body->angle.node, .is_planar = body->has_angle});
   }
-  for (size_t i = BASE + 1, thing = 1; i < mechanism->frame_count; i++)
+  for (size_t i = BASE + 1, object = 1; i < mechanism->frame_count; i++)
     if (!mechanism->frames[i].is_of_body)
-      samples->things[thing++].frame = thing_of_frame(samples, mechanism->frames[i].parent);
+      samples->objects[object++].frame = object_of_frame(samples, mechanism->frames[i].parent);
   for (size_t i = 0; i < mechanism->body_count; i++)
     if (mechanism->bodies[i].is_in_frame)
-      samples->things[first_body + i].frame = thing_of_frame(samples, mechanism->bodies[i].frame);
+      samples->objects[first_body + i].frame = object_of_frame(samples, mechanism->bodies[i].frame);
 }
 
 static void find_constraints(struct Samples *samples) {
@@ -96,10 +96,10 @@ static Node later(Node first, Node second) {
 static Node last_node(const struct Samples *samples) {
   const struct Model *model = samples->model;
   Node last = ZERO;
-  for (size_t i = 0; i < samples->thing_count; i++) {
-    const struct SceneObject *thing = &samples->things[i];
-    for (int axis = 0; axis < 3; axis++) last = later(last, thing->position[axis]);
-    last = later(last, thing->angle);
+  for (size_t i = 0; i < samples->object_count; i++) {
+    const struct SceneObject *object = &samples->objects[i];
+    for (int axis = 0; axis < 3; axis++) last = later(last, object->position[axis]);
+    last = later(last, object->angle);
   }
   for (size_t i = 0; i < model->coordinates.count; i++) last = later(last, model->coordinates.items[i].node);
   for (size_t i = 0; i < model->constraints.count; i++) last = later(last, model->constraints.items[i].node);
@@ -109,7 +109,7 @@ static Node last_node(const struct Samples *samples) {
 
 struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters) {
   struct Samples samples = {.model = model};
-  find_things(&samples);
+  find_objects(&samples);
   find_constraints(&samples);
   samples.count = FEWEST + 2 * samples.constraint_count;
   samples.values = allocate(samples.count, sizeof *samples.values);

@@ -19,8 +19,8 @@ struct SceneObject {
 /* Samples of one model. values[0] is the start; indices of objects are those of things. */
 struct Samples {
   const struct Model *model;
-  struct SceneObject *things; /* the first one is the base */
-  size_t thing_count;
+  struct SceneObject *objects; /* the first one is the base */
+  size_t object_count;
   size_t *constraints; /* indices in the model, of constraints on positions; none if there are too many */
   size_t constraint_count;
   /* of each sample: values by node, up to the last node of positions, constraints, coordinates and gaps */

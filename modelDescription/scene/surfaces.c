@@ -22,7 +22,7 @@ static bool is_plane(const struct Samples *samples, Node gap, struct SceneSurfac
   for (size_t k = 0; k < samples->count; k++) {
     double *row = least_squares_row(&system, k);
     for (int axis = 0; axis < 3; axis++)
-      row[1 + axis] = samples->values[k][samples->things[surface->thing].position[axis]];
+      row[1 + axis] = samples->values[k][samples->objects[surface->object].position[axis]];
     row[0] = 1.0;
     row[4] = samples->values[k][gap];
   }
@@ -79,11 +79,11 @@ static double *values_where(const struct Configurations *configurations, Node ga
 }
 
 /* Sets the surface at the end of a path, with the normal from at to beside. False if the object does not move. */
-static bool is_end(const struct SceneObject *thing, const double *at, const double *beside,
+static bool is_end(const struct SceneObject *object, const double *at, const double *beside,
                    struct SceneSurface *surface) {
   for (int axis = 0; axis < 3; axis++) {
-    surface->point[axis] = at[thing->position[axis]];
-    surface->normal[axis] = beside[thing->position[axis]] - at[thing->position[axis]];
+    surface->point[axis] = at[object->position[axis]];
+    surface->normal[axis] = beside[object->position[axis]] - at[object->position[axis]];
   }
   double length = norm(surface->normal);
   if (!(length > 1e-12)) return false;
@@ -100,9 +100,9 @@ static void add_stop(struct Surfaces *surfaces, const struct Samples *samples,
   double *at = values_where(configurations, gap, &limit, 0.0),
          *beside = at == NULL ? NULL : values_where(configurations, gap, &limit, fabs(limit.slope) * little);
   bool is_found = false;
-  for (size_t thing = 1; thing < samples->thing_count && beside != NULL && !is_found; thing++) {
-    struct SceneSurface surface = {.thing = thing, .is_stop = true};
-    is_found = is_end(&samples->things[thing], at, beside, &surface);
+  for (size_t object = 1; object < samples->object_count && beside != NULL && !is_found; object++) {
+    struct SceneSurface surface = {.object = object, .is_stop = true};
+    is_found = is_end(&samples->objects[object], at, beside, &surface);
     if (is_found) append(surfaces, surface);
   }
   if (at != NULL) release(at);
@@ -114,8 +114,8 @@ static struct Configurations configurations_with_stops(const struct Samples *sam
   const struct Switches *switches = &samples->model->switches;
   struct NodeList wanted = {.count = 0};
   for (size_t i = 0; i < switches->contact_count; i++) append_node(&wanted, switches->contacts[i].gap);
-  for (size_t thing = 0; thing < samples->thing_count; thing++)
-    append_nodes(&wanted, samples->things[thing].position, 3);
+  for (size_t object = 0; object < samples->object_count; object++)
+    append_nodes(&wanted, samples->objects[object].position, 3);
   return configurations_of(samples->model, &wanted);
 }
 
@@ -138,8 +138,8 @@ struct Surfaces find_surfaces(const struct Samples *samples) {
   if (has_stops) configurations = configurations_with_stops(samples);
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t before = surfaces.count;
-    for (size_t thing = 1; thing < samples->thing_count && surfaces.count == before; thing++) {
-      struct SceneSurface surface = {.thing = thing};
+    for (size_t object = 1; object < samples->object_count && surfaces.count == before; object++) {
+      struct SceneSurface surface = {.object = object};
       if (is_plane(samples, switches->contacts[i].gap, &surface)) append(&surfaces, surface);
     }
     if (surfaces.count == before && has_stops) add_stop(&surfaces, samples, &configurations, switches->contacts[i].gap);

@@ -5,7 +5,7 @@
 
 /* A plane that an object hits. The normal has length 1. */
 struct SceneSurface {
-  size_t thing;     /* index of the object that hits it */
+  size_t object;    /* index of the object that hits it */
   double point[3];  /* m: in the plane; of a stop: the position of the object at the stop */
   double normal[3]; /* unit vector towards the open side */
   bool is_stop;

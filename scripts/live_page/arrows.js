@@ -1,7 +1,7 @@
-// Arrows with values: constraint forces along rods and at joints, and velocities of things.
+// Arrows with values: constraint forces along rods and at joints, and velocities of elements.
 "use strict";
 
-const MOST_VELOCITIES = 12; // with more things their velocities have no arrows
+const MOST_VELOCITIES = 12; // with more elements their velocities have no arrows
 
 class Arrows {
   constructor(scene) {
@@ -10,7 +10,7 @@ class Arrows {
       if (connection.tag === "rod" && connection.force) this.addForce([connection.force], { rod: connection });
       if (connection.tag === "joint" && connection.force1) this.addForce([connection.force1, connection.force2], { joint: connection });
     }
-    const moving = scene.things.map((_, i) => i).filter((i) => scene.things[i].tag !== "frame" && scene.columns[i].some((column) => column >= 0));
+    const moving = scene.elements.map((_, i) => i).filter((i) => scene.elements[i].tag !== "frame" && scene.columns[i].some((column) => column >= 0));
     this.velocities = moving.length > MOST_VELOCITIES ? [] : moving.map((i) => ({ i, arrow: this.arrow(0x2ca05a) }));
   }
 
@@ -37,7 +37,7 @@ class Arrows {
     return [from, force.multiplyScalar(sample[columns[0]] * Number(rod.factor))];
   }
 
-  // Returns where a thing is, and its mean velocity since the previous sample.
+  // Returns where an element is, and its mean velocity since the previous sample.
   velocity(history, at, { i }) {
     const position = this.scene.position(history.samples[at][0], i);
     if (at === 0) return [position, new THREE.Vector3()];

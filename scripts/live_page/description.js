@@ -85,9 +85,9 @@ function namesOfLine(line) {
 
 // Returns the names of the variables that may hold positions, orientations and constraint forces; an FMU has some of them.
 function variablesOfScene(scene) {
-  const positions = scene.filter((thing) => "name" in thing).flatMap((thing) => POSITIONS.map((component) => `${thing.name}.${component}`));
-  const ofLines = scene.filter((thing) => thing.tag === "line").flatMap(namesOfLine);
-  return new Set([...positions, ...ofLines, ...scene.flatMap((thing) => ["force", "force1", "force2"].filter((name) => name in thing).map((name) => thing[name]))]);
+  const positions = scene.filter((element) => "name" in element).flatMap((element) => POSITIONS.map((component) => `${element.name}.${component}`));
+  const ofLines = scene.filter((element) => element.tag === "line").flatMap(namesOfLine);
+  return new Set([...positions, ...ofLines, ...scene.flatMap((element) => ["force", "force1", "force2"].filter((name) => name in element).map((name) => element[name]))]);
 }
 
 // Returns the indices of the variables that can be plotted or that the scene needs; only those with these names, if names are given.

@@ -17,32 +17,32 @@ const rayAt = (event) => {
   return ray;
 };
 
-// Returns the index of the thing nearest to the middle of a line: that of a bar, or of the bob on a rod.
+// Returns the index of the element nearest to the middle of a line: that of a bar, or of the bob on a rod.
 function nearestTo(line, sample, canBePulled) {
   const [from, to] = line.at(sample, history.time(history.length - 1)), middle = from.add(to).multiplyScalar(0.5);
-  const candidates = [...scene.things.keys()].filter(canBePulled), distance = (i) => scene.position(sample, i).distanceTo(middle);
+  const candidates = [...scene.elements.keys()].filter(canBePulled), distance = (i) => scene.position(sample, i).distanceTo(middle);
   return candidates.reduce((best, i) => (best === undefined || distance(i) < distance(best) ? i : best), undefined);
 }
 
-// Returns [index of the thing, point in space] of a thing at the pointer that can be pulled.
+// Returns [index of the element, point in space] of an element at the pointer that can be pulled.
 function hitAt(event, sample) {
-  const canBePulled = (i) => i !== undefined && pulls.bodies[scene.things[i].name] !== undefined, found = [];
+  const canBePulled = (i) => i !== undefined && pulls.bodies[scene.elements[i].name] !== undefined, found = [];
   const ray = rayAt(event), test = (object, i) => canBePulled(i) && ray.intersectObject(object, true).slice(0, 1).forEach(({ distance, point }) => found.push([distance, i, point]));
   scene.objects.forEach((object, i) => test(object, i));
   for (const { connection, mesh } of scene.rods) test(mesh, scene.byName.get(connection.of ?? connection.to));
   for (const line of scene.lines) test(line.group, nearestTo(line, sample, canBePulled));
   if (found.length > 0) return found.sort((a, b) => a[0] - b[0])[0].slice(1);
   const box = scene.renderer.domElement.getBoundingClientRect();
-  const nearby = scene.things.map((_, i) => {
+  const nearby = scene.elements.map((_, i) => {
     const point = scene.position(sample, i), onScreen = point.clone().project(scene.camera);
     return [Math.hypot(box.left + ((onScreen.x + 1) * box.width) / 2 - event.clientX, box.top + ((1 - onScreen.y) * box.height) / 2 - event.clientY), i, point];
   });
   return nearby.filter(([distance, i]) => distance < GRASP_RADIUS && canBePulled(i)).sort((a, b) => a[0] - b[0])[0]?.slice(1);
 }
 
-// Returns the grasped point in the body's frame; a thing without orientation is grasped at its origin.
+// Returns the grasped point in the body's frame; an element without orientation is grasped at its origin.
 function localOf(point, i, sample) {
-  const { tag, inertia } = scene.things[i], local = point.clone().sub(scene.position(sample, i));
+  const { tag, inertia } = scene.elements[i], local = point.clone().sub(scene.position(sample, i));
   if (tag !== "body") return new THREE.Vector3();
   if (scene.angles[i] < 0 && inertia !== undefined) return new THREE.Vector3();
   return local.applyMatrix4(new THREE.Matrix4().getInverse(scene.rotation(sample, i)));
@@ -52,7 +52,7 @@ const graspedPoint = (sample) => grasped.local.clone().applyMatrix4(scene.rotati
 
 // Returns the spring, [stiffness in N/m, damping time in s]: the system's weight stretches it by ELONGATION, or OSCILLATIONS defines its frequency.
 function springOf() {
-  const mass = scene.things.map((thing) => valueOf(thing.mass || "0")).filter((one) => one > 0).reduce((sum, one) => sum + one, 0) || 1;
+  const mass = scene.elements.map((element) => valueOf(element.mass || "0")).filter((one) => one > 0).reduce((sum, one) => sum + one, 0) || 1;
   const gravity = scene.gravity ? Math.hypot(...["x", "y", "z"].map((axis) => valueOf(scene.gravity[axis] || "0"))) : 0;
   const angularFrequency = gravity > 0 ? Math.sqrt(gravity / (ELONGATION * scene.span)) : (2 * Math.PI * OSCILLATIONS) / description.duration;
   return [mass * angularFrequency * angularFrequency, DAMPING / angularFrequency];
@@ -63,7 +63,7 @@ function grasp(event) {
   const sample = history.samples[history.length - 1][0], hit = hitAt(event, sample);
   if (!hit) return;
   const [i, point] = hit, normal = scene.camera.getWorldDirection(new THREE.Vector3());
-  grasped = { i, body: scene.things[i].name, local: localOf(point, i, sample), plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point), target: point };
+  grasped = { i, body: scene.elements[i].name, local: localOf(point, i, sample), plane: new THREE.Plane().setFromNormalAndCoplanarPoint(normal, point), target: point };
   scene.controls.enabled = false;
   scene.renderer.domElement.setPointerCapture(event.pointerId);
   if (!playing) play();

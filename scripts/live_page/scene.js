@@ -4,10 +4,10 @@
 const AXES = ["x", "y", "z"];
 const TRAIL_LENGTH = 240; // samples of a trail
 const FAR = 5; // times its own size: a system that travels further is followed by the view
-const MOST_TRAILS = 8; // with more moving things only the last one has a trail
+const MOST_TRAILS = 8; // with more moving elements only the last one has a trail
 
 // True for a body in the plane, which has a single moment of inertia.
-const isPlanarBody = (thing) => thing.inertia !== undefined || !["Ixx", "Iyy"].some((name) => name in thing);
+const isPlanarBody = (element) => element.inertia !== undefined || !["Ixx", "Iyy"].some((name) => name in element);
 
 // Returns the 16-bit numbers in a text of base64.
 function numbersOf(text) {
@@ -29,25 +29,25 @@ function radiusOf({ points }) {
 }
 
 class Scene {
-  // things: the elements of <scene>; column(name): index of a variable in a sample, or -1; value(formula): value of a formula of parameters;
+  // elements: the elements of <scene>; column(name): index of a variable in a sample, or -1; value(formula): value of a formula of parameters;
   // compiled(formula): a function of a sample and its time.
-  constructor(container, things, column, value, compiled) {
+  constructor(container, elements, column, value, compiled) {
     Object.assign(this, { container, column, value, compiled, labels: [], options: {} });
-    this.gravity = things.find((thing) => thing.tag === "gravity");
-    this.things = things.filter((thing) => ["frame", "body", "particle", "point"].includes(thing.tag));
-    const isPlanar = (name) => things.some((thing) => thing.name === name && thing.inertia !== undefined);
+    this.gravity = elements.find((element) => element.tag === "gravity");
+    this.elements = elements.filter((element) => ["frame", "body", "particle", "point"].includes(element.tag));
+    const isPlanar = (name) => elements.some((element) => element.name === name && element.inertia !== undefined);
     // A joint between two bodies in the plane is drawn for both.
-    const others = things.filter((thing) => thing.tag === "joint" && isPlanar(thing.with));
-    this.connections = things.filter((thing) => ["rod", "joint"].includes(thing.tag));
+    const others = elements.filter((element) => element.tag === "joint" && isPlanar(element.with));
+    this.connections = elements.filter((element) => ["rod", "joint"].includes(element.tag));
     this.connections.push(...others.map((joint) => ({ tag: "joint", of: joint.with, x: joint.withX, y: joint.withY })));
-    this.shapes = things.filter((thing) => thing.tag === "shape");
-    this.meshes = new Map(things.filter((thing) => thing.tag === "mesh").map((mesh) => [mesh.id, surfaceOf(mesh)]));
-    this.surfaces = things.filter((thing) => thing.tag === "surface");
-    this.lineElements = things.filter((thing) => thing.tag === "line");
-    this.byName = new Map(this.things.map((thing, i) => [thing.name, i]));
-    this.columns = this.things.map((thing) => AXES.map((axis) => column(`${thing.name}.${axis}`)));
-    this.angles = this.things.map((thing) => column(`${thing.name}.angle`));
-    this.rotationColumns = this.things.map((thing) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${thing.name}.R${i}${j}`))));
+    this.shapes = elements.filter((element) => element.tag === "shape");
+    this.meshes = new Map(elements.filter((element) => element.tag === "mesh").map((mesh) => [mesh.id, surfaceOf(mesh)]));
+    this.surfaces = elements.filter((element) => element.tag === "surface");
+    this.lineElements = elements.filter((element) => element.tag === "line");
+    this.byName = new Map(this.elements.map((element, i) => [element.name, i]));
+    this.columns = this.elements.map((element) => AXES.map((axis) => column(`${element.name}.${axis}`)));
+    this.angles = this.elements.map((element) => column(`${element.name}.angle`));
+    this.rotationColumns = this.elements.map((element) => [1, 2, 3].flatMap((i) => [1, 2, 3].map((j) => column(`${element.name}.R${i}${j}`))));
     this.lines = this.lineElements.map((line) => new DrawnLine(this, line, compiled));
     this.isDescribed = this.lineElements.some((line) => !line.guessed);
     this.renderer = new THREE.WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
@@ -64,12 +64,12 @@ class Scene {
     return target.set(x, y, z);
   }
 
-  // Returns the rotation matrix of a thing, or of the frame that contains it.
+  // Returns the rotation matrix of an element, or of the frame that contains it.
   rotation(sample, i, target = new THREE.Matrix4()) {
     if (i === undefined) return target.identity();
     const angle = this.angles[i], columns = this.rotationColumns[i];
     if (angle >= 0) return target.makeRotationZ(sample[angle]);
-    if (columns.every((column) => column < 0)) return this.rotation(sample, this.byName.get(this.things[i].in), target);
+    if (columns.every((column) => column < 0)) return this.rotation(sample, this.byName.get(this.elements[i].in), target);
     const r = columns.map((column) => (column < 0 ? 0 : sample[column]));
     return target.set(r[0], r[1], r[2], 0, r[3], r[4], r[5], 0, r[6], r[7], r[8], 0, 0, 0, 0, 1);
   }
@@ -90,10 +90,10 @@ class Scene {
   adapt() {
     if (!this.objects) return;
     this.evaluate();
-    this.solids = this.things.map((thing) => this.solidOf(thing));
-    this.things.forEach((thing, i) => {
+    this.solids = this.elements.map((element) => this.solidOf(element));
+    this.elements.forEach((element, i) => {
       this.objects[i].remove(...this.objects[i].children);
-      this.addParts(this.objects[i], thing, i);
+      this.addParts(this.objects[i], element, i);
     });
   }
 
@@ -114,7 +114,7 @@ class Scene {
     return line.axis ? AXES.indexOf(line.axis) : this.plane ? this.planeNormal : 2;
   }
 
-  // Returns the two axes of the plane in which all things move in these samples; null if there is no such plane.
+  // Returns the two axes of the plane in which all elements move in these samples; null if there is no such plane.
   findPlane(samples, times) {
     const ends = samples.flatMap((sample, k) => this.lines.flatMap((line) => line.at(sample, times[k])));
     const normal = [2, 1, 0].find((axis) => {
@@ -140,7 +140,7 @@ class Scene {
     const isNear = !this.isDescribed && (isFixedToBase || this.box.distanceToPoint(point.set(0, 0, 0)) < 1.5 * size);
     if (isNear) this.box.expandByPoint(point.set(0, 0, 0));
     this.span = this.box.getSize(point).length() || 1;
-    this.solids = this.things.map((thing) => this.solidOf(thing));
+    this.solids = this.elements.map((element) => this.solidOf(element));
     for (const surface of this.surfaces) if (surface.stop) this.box.expandByPoint(point.set(...AXES.map((axis) => Number(surface[axis]))));
     const largest = Math.max(0, ...this.solids.filter(Boolean).map(sizeOf));
     this.radius = 0.5 * this.box.getSize(point).length() + largest || 1;
@@ -149,7 +149,7 @@ class Scene {
     if (largest > 0) this.box.expandByScalar(largest);
     this.makeColors();
     this.addGround();
-    this.objects = this.things.map((thing, i) => this.addThing(thing, i));
+    this.objects = this.elements.map((element, i) => this.addElement(element, i));
     const isGuessed = !this.isDescribed;
     this.rods = isGuessed ? this.connections.map((connection) => this.addRod(connection)) : [];
     this.addFixedShapes();
@@ -164,7 +164,7 @@ class Scene {
   // Returns the bounding box of all objects at a time.
   boxAt(sample, time) {
     const box = new THREE.Box3(), point = new THREE.Vector3();
-    this.things.forEach((_, i) => box.expandByPoint(this.position(sample, i, point)));
+    this.elements.forEach((_, i) => box.expandByPoint(this.position(sample, i, point)));
     for (const line of this.lines) line.expand(box, sample, time);
     this.expandByShapes(box, sample);
     for (const connection of this.connections) if (connection.tag === "joint") box.expandByPoint(this.jointPosition(sample, connection, point));
@@ -211,16 +211,16 @@ class Scene {
     return COLORS[i % COLORS.length];
   }
 
-  // True if a thing is drawn by its shapes or by those of its frame.
-  hasShape(thing) {
-    return this.shapes.some((shape) => shape.in === thing.name || (thing.in && shape.in === thing.in));
+  // True if an element is drawn by its shapes or by those of its frame.
+  hasShape(element) {
+    return this.shapes.some((shape) => shape.in === element.name || (element.in && shape.in === element.in));
   }
 
-  solidOf(thing) {
-    if (this.hasShape(thing)) return null;
-    if (thing.tag !== "body" || (isPlanarBody(thing) && (this.isDescribed || this.isLink(thing)))) return null;
-    const mass = this.value(thing.mass || "0"), entry = (name) => this.value(thing[name] || "0");
-    if (thing.inertia !== undefined) {
+  solidOf(element) {
+    if (this.hasShape(element)) return null;
+    if (element.tag !== "body" || (isPlanarBody(element) && (this.isDescribed || this.isLink(element)))) return null;
+    const mass = this.value(element.mass || "0"), entry = (name) => this.value(element[name] || "0");
+    if (element.inertia !== undefined) {
       const moment = entry("inertia");
       return mass > 0 && moment > 0 ? { kind: "cylinder", radius: Math.sqrt((2 * moment) / mass), length: 0, axes: [[1, 0, 0], [0, 1, 0], [0, 0, 1]] } : null;
     }
@@ -233,41 +233,41 @@ class Scene {
   }
 
   // True for a body that rods represent: from joint to joint, or from the origin of its frame to its own position.
-  isLink(thing) {
-    return this.isJointed(thing.name) || this.connections.some(({ tag, from, to }) => tag === "rod" && from === thing.in && to === thing.name);
+  isLink(element) {
+    return this.isJointed(element.name) || this.connections.some(({ tag, from, to }) => tag === "rod" && from === element.in && to === element.name);
   }
 
   isJointed(name) {
     return this.connections.some((connection) => connection.tag === "joint" && connection.of === name);
   }
 
-  // Returns the radius of a particle's ball, by its mass relative to the heaviest; 0 for things that are drawn otherwise.
+  // Returns the radius of a particle's ball, by its mass relative to the heaviest; 0 for elements that are drawn otherwise.
   ballRadius(i) {
-    const thing = this.things[i], isLoose = thing.tag === "body" && !this.isJointed(thing.name) && !(this.isDescribed && isPlanarBody(thing));
-    if (this.solids[i] || this.hasShape(thing) || !(thing.tag === "particle" || isLoose)) return 0;
-    const massOf = (other) => this.value(other.mass || "0"), mass = massOf(thing);
-    const heaviest = Math.max(...this.things.map(massOf).filter(Number.isFinite)) || 1;
+    const element = this.elements[i], isLoose = element.tag === "body" && !this.isJointed(element.name) && !(this.isDescribed && isPlanarBody(element));
+    if (this.solids[i] || this.hasShape(element) || !(element.tag === "particle" || isLoose)) return 0;
+    const massOf = (other) => this.value(other.mass || "0"), mass = massOf(element);
+    const heaviest = Math.max(...this.elements.map(massOf).filter(Number.isFinite)) || 1;
     const share = Number.isFinite(mass) ? Math.cbrt(Math.max(0, mass) / heaviest) : 0.5;
-    return (0.07 * this.radius * (0.35 + 0.65 * share)) / (1 + Math.min(this.things.length, 60) / 12);
+    return (0.07 * this.radius * (0.35 + 0.65 * share)) / (1 + Math.min(this.elements.length, 60) / 12);
   }
 
-  addThing(thing, i) {
+  addElement(element, i) {
     const group = new THREE.Group();
-    this.addParts(group, thing, i);
+    this.addParts(group, element, i);
     group.matrixAutoUpdate = false;
     this.world.add(group);
-    this.labels.push(this.newLabel(thing.name));
+    this.labels.push(this.newLabel(element.name));
     return group;
   }
 
-  addParts(group, thing, i) {
+  addParts(group, element, i) {
     const solid = this.solids[i];
-    for (const shape of this.shapes) if (shape.in === thing.name) group.add(this.meshOfShape(shape, i));
+    for (const shape of this.shapes) if (shape.in === element.name) group.add(this.meshOfShape(shape, i));
     if (solid) group.add(this.meshOf(solid, i));
     else if (this.ballRadius(i) > 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(this.ballRadius(i), 24, 16), this.material(this.colorOf(i))));
-    } else if (thing.tag === "point") group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.018 * this.radius, 12, 8), this.material(this.colorOf(i))));
-    else if (thing.tag === "frame" && !this.isDescribed && this.shapes.length === 0) {
+    } else if (element.tag === "point") group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.018 * this.radius, 12, 8), this.material(this.colorOf(i))));
+    else if (element.tag === "frame" && !this.isDescribed && this.shapes.length === 0) {
       group.add(new THREE.Mesh(new THREE.SphereBufferGeometry(0.022 * this.radius, 12, 8), this.rodMaterial));
       if (!this.plane) group.add(new THREE.AxesHelper(0.12 * this.radius));
     }
@@ -364,9 +364,9 @@ class Scene {
     }
   }
 
-  // Adds a rod between two things, or from the centre of a planar body to its joint.
+  // Adds a rod between two elements, or from the centre of a planar body to its joint.
   addRod(connection) {
-    const thickness = 0.014 * this.radius / (1 + this.things.length / 60);
+    const thickness = 0.014 * this.radius / (1 + this.elements.length / 60);
     const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(thickness, thickness, 1, 10), this.rodMaterial);
     this.world.add(mesh);
     let ball = null;
@@ -402,9 +402,9 @@ class Scene {
     }
   }
 
-  // Adds surfaces of contacts and stops, moved back by the radius of a thing that is drawn as a ball.
+  // Adds surfaces of contacts and stops, moved back by the radius of an element that is drawn as a ball.
   addSurfaces() {
-    const vector = (thing, names) => new THREE.Vector3(...names.map((name) => Number(thing[name])));
+    const vector = (element, names) => new THREE.Vector3(...names.map((name) => Number(element[name])));
     for (const surface of this.surfaces) {
       const normal = vector(surface, ["nx", "ny", "nz"]), point = vector(surface, AXES), isStop = surface.stop === "true";
       const centre = this.box.getCenter(new THREE.Vector3()), extent = (isStop ? 0.3 : 2.4) * this.radius, thickness = 0.04 * this.radius;
@@ -416,12 +416,12 @@ class Scene {
     }
   }
 
-  // Adds the paths of things, and of the last ends of lines that have a trail.
+  // Adds the paths of elements, and of the last ends of lines that have a trail.
   addTrails() {
-    const moving = this.things.map((thing, i) => i).filter((i) => !["frame"].includes(this.things[i].tag) && !this.isJointed(this.things[i].name) && this.columns[i].some((c) => c >= 0));
+    const moving = this.elements.map((element, i) => i).filter((i) => !["frame"].includes(this.elements[i].tag) && !this.isJointed(this.elements[i].name) && this.columns[i].some((c) => c >= 0));
     const chosen = moving.length <= MOST_TRAILS ? moving : moving.slice(-1);
     const paths = chosen.map((i) => ({ color: this.colorOf(i), where: (sample, time, target) => this.position(sample, i, target) }));
-    this.lines.filter(({ line }) => line.trail).forEach((line, k) => paths.push({ color: this.colorOf(this.things.length + k), where: line.ends[line.isPoint ? 0 : 1] }));
+    this.lines.filter(({ line }) => line.trail).forEach((line, k) => paths.push({ color: this.colorOf(this.elements.length + k), where: line.ends[line.isPoint ? 0 : 1] }));
     this.trails = paths.map((path) => {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(3 * TRAIL_LENGTH), 3));
@@ -548,7 +548,7 @@ class Scene {
     });
   }
 
-  placeThings(objects, sample) {
+  placeElements(objects, sample) {
     const rotation = new THREE.Matrix4(), point = new THREE.Vector3();
     objects.forEach((object, i) => {
       this.rotation(sample, i, rotation);
@@ -559,9 +559,9 @@ class Scene {
 
   placeGhost(sample) {
     if (!sample && !this.ghosts) return;
-    this.ghosts = this.ghosts || this.things.map((_, i) => this.ghostOf(i));
+    this.ghosts = this.ghosts || this.elements.map((_, i) => this.ghostOf(i));
     for (const ghost of this.ghosts) ghost.visible = Boolean(sample);
-    if (sample) this.placeThings(this.ghosts, sample);
+    if (sample) this.placeElements(this.ghosts, sample);
   }
 
   ghostOf(i) {
@@ -572,11 +572,11 @@ class Scene {
     return ghost;
   }
 
-  // Enlarges the view of a plane, if a thing has left it.
+  // Enlarges the view of a plane, if an element has left it.
   enlargeView(sample, time) {
     const point = new THREE.Vector3(), before = this.frameBox.clone();
     for (const line of this.lines) line.expand(this.frameBox, sample, time);
-    this.things.forEach((_, i) => this.frameBox.expandByPoint(this.position(sample, i, point)));
+    this.elements.forEach((_, i) => this.frameBox.expandByPoint(this.position(sample, i, point)));
     if (!before.equals(this.frameBox)) this.resize();
   }
 
@@ -585,7 +585,7 @@ class Scene {
     const runs = history.samples[at], time = history.time(at);
     this.follow(runs[0], time);
     if (this.plane) this.enlargeView(runs[0], time);
-    this.placeThings(this.objects, runs[0]);
+    this.placeElements(this.objects, runs[0]);
     this.placeGhost(runs[1]);
     this.placeRods(runs[0]);
     for (const line of this.lines) line.update(runs[0], time);

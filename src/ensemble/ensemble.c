@@ -26,14 +26,14 @@ static bool is_allowed(const struct ScalarVariable *variable, double value) {
   return isfinite(value) && value >= variable->minimum && value <= variable->maximum;
 }
 
-static void leave(struct LaneGroup *group, Mask lanes) {
+static void release_lanes(struct LaneGroup *group, Mask lanes) {
   for (int i = 0; any_lane(lanes) && i < LANES; i++)
     if (lanes[i]) group->ensemble->is_left[group->run[i]] = true;
   group->is_active &= ~lanes;
 }
 
 /* Loads the next run into a lane. */
-static void load(struct LaneGroup *group, int lane) {
+static void load_run(struct LaneGroup *group, int lane) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
   size_t run = group->next++;
@@ -56,7 +56,7 @@ static void load(struct LaneGroup *group, int lane) {
 }
 
 /* Computes start values that are expressions of parameters, except those that vary themselves. */
-static void follow(struct LaneGroup *group, Mask lanes) {
+static void set_following_starts(struct LaneGroup *group, Mask lanes) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
   struct Point point = {.parameter = steps->parameter, .work = steps->point_work};
@@ -73,22 +73,22 @@ static void follow(struct LaneGroup *group, Mask lanes) {
 }
 
 /* Loads runs into free lanes, until all are active or no run is left. */
-static void fill(struct LaneGroup *group) {
+static void load_runs(struct LaneGroup *group) {
   Mask is_new;
   do {
     is_new = ~group->is_active;
     for (int i = 0; i < LANES; i++)
-      while (!group->is_active[i] && group->next < group->end) load(group, i);
+      while (!group->is_active[i] && group->next < group->end) load_run(group, i);
     is_new &= group->is_active;
     if (!any_lane(is_new)) return;
-    follow(group, is_new);
-    if (lane_events_are_needed()) leave(group, lane_events_start(&group->events, is_new));
-    leave(group, lane_steps_start(&group->steps) & is_new);
+    set_following_starts(group, is_new);
+    if (lane_events_are_needed()) release_lanes(group, lane_events_start(&group->events, is_new));
+    release_lanes(group, lane_steps_start(&group->steps) & is_new);
   } while (any_lane(~group->is_active) && group->next < group->end);
 }
 
 /* Returns the lanes whose next sampling time lies before their event, or else in their step; time: these times. */
-static Mask find_reached(const struct LaneGroup *group, Lanes *time) {
+static Mask find_sampled(const struct LaneGroup *group, Lanes *time) {
   const double *times = group->ensemble->times;
   Lanes end = group->steps.origin + group->steps.interval;
   Mask is_reached = {0};
@@ -103,18 +103,18 @@ static Mask find_reached(const struct LaneGroup *group, Lanes *time) {
 }
 
 /* Samples values at all times within the steps. A run ends at the last time. */
-static void deliver(struct LaneGroup *group) {
+static void report_samples(struct LaneGroup *group) {
   const struct Ensemble *ensemble = group->ensemble;
   for (;;) {
     Lanes time = group->steps.origin;
-    Mask is_reached = find_reached(group, &time), is_over = {0};
+    Mask is_reached = find_sampled(group, &time), is_over = {0};
     if (!any_lane(is_reached)) return;
     lane_steps_take_state(&group->steps, time);
     Mask is_lost = lane_events_project(&group->events, time, is_reached);
     is_lost |= lane_values_report(ensemble, &group->events, time, is_reached, group->run, group->time);
     for (int i = 0; i < LANES; i++)
       if (is_reached[i] && ++group->time[i] == ensemble->time_count) is_over[i] = -1;
-    leave(group, is_lost | lane_events_may_not_end(&group->events, time, is_over));
+    release_lanes(group, is_lost | lane_events_may_not_end(&group->events, time, is_over));
     group->is_active &= ~is_over;
   }
 }
@@ -133,13 +133,13 @@ bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count) {
   double tolerance = ensemble->tolerance > 0.0 ? ensemble->tolerance : lagrangian.steps.tolerance;
   if (!lane_steps_create(&group.steps, tolerance, ensemble->times[ensemble->time_count - 1])) return false;
   bool has_memory = lane_events_create(&group.events, &group.steps);
-  if (has_memory) fill(&group);
-  for (; has_memory && any_lane(group.is_active); fill(&group)) {
-    leave(&group, lane_steps_expand(&group.steps, group.is_active));
-    leave(&group, lane_events_find(&group.events, group.is_active));
-    deliver(&group);
-    leave(&group, lane_steps_move(&group.steps) & group.is_active);
-    leave(&group, lane_events_continue(&group.events, group.is_active));
+  if (has_memory) load_runs(&group);
+  for (; has_memory && any_lane(group.is_active); load_runs(&group)) {
+    release_lanes(&group, lane_steps_expand(&group.steps, group.is_active));
+    release_lanes(&group, lane_events_find(&group.events, group.is_active));
+    report_samples(&group);
+    release_lanes(&group, lane_steps_move(&group.steps) & group.is_active);
+    release_lanes(&group, lane_events_continue(&group.events, group.is_active));
   }
   lane_events_destroy(&group.events);
   lane_steps_destroy(&group.steps);

@@ -97,7 +97,7 @@ LANES_INLINE Lanes cosine_near_zero(Lanes x) {
 }
 
 /* Returns sin(x + more_turns pi/2); 1 gives cos. */
-LANES_INLINE Lanes sine_behind(Lanes x, int64_t more_turns) {
+LANES_INLINE Lanes sine_after(Lanes x, int64_t more_turns) {
   struct QuarterTurns angle = quarter_turns(x);
   Mask turns = angle.turns + more_turns;
   Lanes sine = sine_near_zero(angle.rest), cosine = cosine_near_zero(angle.rest);
@@ -108,7 +108,7 @@ LANES_INLINE Lanes sine_behind(Lanes x, int64_t more_turns) {
 /* Uses the functions of C for larger angles. */
 #define LANE_SINE(name, more_turns)                                                                                    \
   LANES_INLINE Lanes lanes_##name(Lanes x) {                                                                           \
-    Lanes value = sine_behind(x, more_turns);                                                                          \
+    Lanes value = sine_after(x, more_turns);                                                                           \
     Mask is_far = ~(lanes_absolute(x) <= LARGEST_ANGLE);                                                               \
     if (any_lane(is_far))                                                                                              \
       for (int i = 0; i < LANES; i++)                                                                                  \

@@ -46,13 +46,13 @@ static struct Derived derive(const char *text, const char *point) {
   return derived;
 }
 
-struct Given {
+struct Override {
   const char *name;
   double value;
 };
 
 /* Returns the value of a node for the given values of symbols; the others have their start values. */
-static double value_of(const struct Derived *derived, Node node, const struct Given *given, size_t count) {
+static double value_of(const struct Derived *derived, Node node, const struct Override *given, size_t count) {
   const struct Graph *graph = derived->model->graph;
   double *symbols = start_values(derived->model);
   for (size_t k = 0; k < count; k++) {
@@ -64,7 +64,7 @@ static double value_of(const struct Derived *derived, Node node, const struct Gi
   return value;
 }
 
-static void assert_value(const struct Derived *derived, Node node, const struct Given *given, size_t count,
+static void assert_value(const struct Derived *derived, Node node, const struct Override *given, size_t count,
                          double expected, double tolerance) {
   double value = value_of(derived, node, given, count);
   if (!(fabs(value - expected) <= tolerance)) fail_msg("%.17g, expected %.17g", value, expected);
@@ -78,7 +78,7 @@ static void test_magnetic_terms(void **state) {
              "<parameter name='k' start='5'/><coordinate name='x' velocity='v'/><coordinate name='y' velocity='w'/>"
              "<particle name='p' mass='m' x='x' y='y'/><potential>k*x^2/2 - q*x*w</potential></system>",
              NULL);
-  const struct Given at[] = {{"x", 0.3}, {"y", -0.7}, {"v", 1.1}, {"w", 1.7}, {"der(v)", 0.4}, {"der(w)", -0.9}};
+  const struct Override at[] = {{"x", 0.3}, {"y", -0.7}, {"v", 1.1}, {"w", 1.7}, {"der(v)", 0.4}, {"der(w)", -0.9}};
   assert_int_equal(charge.diagnostics.errors, 0);
   const struct Equations *equations = charge.equations;
   assert_value(&charge, equations->potential, at, 6, 2.5 * 0.09, 1e-14);
@@ -148,7 +148,7 @@ static void test_linearization(void **state) {
   (void)state;
   struct Derived cart = derive(CART, "x=2 theta=1 v=0.5 omega=-1.5 F=4");
   const struct Motion point = {2, 1, 0.5L, -1.5L, 4}, deviation = {0.3L, -0.2L, 0.7L, 0.4L, -1};
-  const struct Given at[] = {{"x", 2.3}, {"theta", 0.8}, {"v", 1.2}, {"omega", -1.1}, {"F", 3}};
+  const struct Override at[] = {{"x", 2.3}, {"theta", 0.8}, {"v", 1.2}, {"omega", -1.1}, {"F", 3}};
   assert_int_equal(cart.diagnostics.errors, 0);
   const struct Equations *linear = cart.linear;
   const struct {
@@ -170,8 +170,8 @@ static void test_equations_of_coupled_coordinates(void **state) {
   struct Derived cart = derive(CART, NULL);
   assert_int_equal(cart.diagnostics.errors, 0);
   const double x = 0.6, theta = 2.5, v = 1.2, omega = -1.1, force = 3, a = 0.7, alpha = -1.9;
-  const struct Given at[] = {{"x", x},      {"theta", theta},     {"v", v}, {"omega", omega}, {"F", force},
-                             {"der(v)", a}, {"der(omega)", alpha}};
+  const struct Override at[] = {{"x", x},      {"theta", theta},     {"v", v}, {"omega", omega}, {"F", force},
+                                {"der(v)", a}, {"der(omega)", alpha}};
   double m[2][2] = {{5 + 2 * x * x, 2 * cos(theta)}, {2 * cos(theta), 2}};
   double right[] = {force * x - 20 * x * x * x - 2 * x * v * v + 2 * sin(theta) * omega * omega, -18 * sin(theta)};
   double determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
@@ -193,7 +193,7 @@ static void test_elements_that_vanish(void **state) {
   assert_int_equal(pair.diagnostics.errors, 0);
   assert_int_equal(pair.equations->inertia->block_count, 2);
   assert_int_equal(inertia_element(pair.equations->inertia, 0, 1), ZERO);
-  const struct Given at[] = {{"q", 0.3}, {"s", 0.8}};
+  const struct Override at[] = {{"q", 0.3}, {"s", 0.8}};
   assert_value(&pair, inertia_element(pair.equations->inertia, 1, 1), at, 2, 2 + 1.21 + 0.25, 1e-14);
 }
 
@@ -207,7 +207,7 @@ static void test_linear_system_with_its_constant(void **state) {
       "theta=1 u=2");
   assert_int_equal(rod.diagnostics.errors, 0);
   double slope = -9 * cos(1) - 2 * sin(1), value = -9 * sin(1) + 2 * cos(1);
-  const struct Given at[] = {{"theta", 1.3}, {"omega", 5}, {"u", 1.5}};
+  const struct Override at[] = {{"theta", 1.3}, {"omega", 5}, {"u", 1.5}};
   assert_value(&rod, rod.linear->acceleration[0], at, 3, value + 0.3 * slope - 0.5 * cos(1), 1e-14);
   struct LinearSystem *system = linear_system_of(rod.model, rod.linear, &rod.diagnostics);
   const double a[] = {0, 1, slope, 0}, b[] = {0, cos(1)}, c[] = {0, value - slope - 2 * cos(1)};
@@ -264,7 +264,7 @@ static void test_symbolic_solution_of_larger_systems(void **state) {
   struct Derived ring = derive(RING(5, " + v[1]^2"), "x[1]=0");
   assert_int_equal(ring.diagnostics.errors, 0);
   assert_int_equal(ring.equations->inertia->block_count, 1);
-  const struct Given at[] = {{"x[1]", 0.3}, {"x[2]", -0.2}, {"x[3]", 0.9}, {"x[4]", 1.7}, {"x[5]", -2.1}};
+  const struct Override at[] = {{"x[1]", 0.3}, {"x[2]", -0.2}, {"x[3]", 0.9}, {"x[4]", 1.7}, {"x[5]", -2.1}};
   double a[RING_SIZE], m[RING_SIZE][RING_SIZE] = {{0}};
   for (int i = 0; i < RING_SIZE; i++) {
     int before = (i + RING_SIZE - 1) % RING_SIZE, stiffness = i == 0 ? 1 : i + 1;

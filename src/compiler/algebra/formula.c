@@ -36,7 +36,7 @@ void print_number(FILE *file, double value) {
   fputs(text, file);
 }
 
-static bool is_cut(struct Printer *printer) {
+static bool is_truncated(struct Printer *printer) {
   if (ftell(printer->file) < LENGTH_LIMIT && printer->depth < DEPTH_LIMIT) return false;
   fputs("...", printer->file);
   return true;
@@ -177,7 +177,7 @@ static void print_term(struct Printer *printer, Node node, bool first) {
   struct Conditional choice;
   bool is_sum = printer->graph->vertices[node].operation == ADD && !choice_of(printer->graph, node, &choice);
   if (is_sum && name_of(printer, node) == NULL) {
-    if (is_cut(printer)) return;
+    if (is_truncated(printer)) return;
     printer->depth++;
     print_term(printer, printer->graph->vertices[node].left, first);
     print_term(printer, printer->graph->vertices[node].right, false);
@@ -234,7 +234,7 @@ static void print_function(struct Printer *printer, const struct Vertex *vertex)
 }
 
 static void print(struct Printer *printer, Node node, enum Precedence tightness) {
-  if (is_cut(printer)) return;
+  if (is_truncated(printer)) return;
   const char *name = name_of(printer, node);
   if (name != NULL) {
     fputs(name, printer->file);

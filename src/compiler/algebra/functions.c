@@ -158,45 +158,45 @@ static Node auxiliary_of_power(struct Graph *graph, Node node) {
 
 /* --- Partial derivatives of operations whose recurrence does not give them; by_right stays ZERO for one operand --- */
 
-static void along_sum(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_sum(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   (void)graph;
   (void)node;
   *by_left = *by_right = ONE;
 }
 
-static void along_product(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_product(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   *by_left = graph->vertices[node].right;
   *by_right = graph->vertices[node].left;
 }
 
-static void along_power(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_power(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   Node base = graph->vertices[node].left, exponent = graph->vertices[node].right;
   *by_left = multiply(graph, exponent, power(graph, base, subtract(graph, exponent, ONE)));
   if (!graph_is_constant(graph, exponent)) *by_right = multiply(graph, function(graph, LOGARITHM, base, ZERO), node);
 }
 
-static void along_angle(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_angle(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   Node y = graph->vertices[node].left, x = graph->vertices[node].right, square = sum_of_squares(graph, node);
   *by_left = divide(graph, x, square);
   *by_right = negate(graph, divide(graph, y, square));
 }
 
-static void along_minimum(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_minimum(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   *by_right = function(graph, LESS, graph->vertices[node].right, graph->vertices[node].left);
   *by_left = subtract(graph, ONE, *by_right);
 }
 
-static void along_maximum(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_maximum(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   *by_right = function(graph, LESS, graph->vertices[node].left, graph->vertices[node].right);
   *by_left = subtract(graph, ONE, *by_right);
 }
 
-static void along_guard(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_guard(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   *by_left = ZERO;
   *by_right = function(graph, GUARD, operand(graph, node), ONE);
 }
 
-static void along_absolute(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
+static void partials_of_absolute(struct Graph *graph, Node node, Node *by_left, Node *by_right) {
   (void)by_right;
   *by_left = function(graph, SIGN, operand(graph, node), ZERO);
 }
@@ -206,23 +206,23 @@ static void along_absolute(struct Graph *graph, Node node, Node *by_left, Node *
 const struct Function functions[OPERATION_COUNT] = {
     [CONSTANT] = {.name = "constant", .is_internal = true},
     [SYMBOL] = {.name = "symbol", .is_internal = true},
-    [ADD] = {.name = "add", .is_internal = true, .of_two = sum_of, .partial_derivatives = along_sum},
+    [ADD] = {.name = "add", .is_internal = true, .of_two = sum_of, .partial_derivatives = partials_of_sum},
     [MULTIPLY] = {.name = "multiply",
                   .is_internal = true,
                   .of_two = product_of_two,
-                  .partial_derivatives = along_product},
+                  .partial_derivatives = partials_of_product},
     [POWER] = {.name = "pow",
                .of_two = pow,
                .domain = {CLOSED, 0.0, INFINITY},
                .domain_text = "that is not negative",
                .auxiliary = auxiliary_of_power,
-               .partial_derivatives = along_power},
+               .partial_derivatives = partials_of_power},
     [ATAN2] = {.name = "atan2",
                .of_two = atan2,
                .units = UNIT_LOST,
                .recurrence = ANGLE,
                .auxiliary = sum_of_squares,
-               .partial_derivatives = along_angle,
+               .partial_derivatives = partials_of_angle,
                .auxiliary_limit = "positive"}, /* both operands too: series_limit_angle() */
     [MINIMUM] = {.name = "min",
                  .c_name = "fmin",
@@ -230,7 +230,7 @@ const struct Function functions[OPERATION_COUNT] = {
                  .units = UNIT_KEPT,
                  .recurrence = CHOICE,
                  .auxiliary = difference,
-                 .partial_derivatives = along_minimum,
+                 .partial_derivatives = partials_of_minimum,
                  .has_pieces = true,
                  .auxiliary_limit = "sign"},
     [MAXIMUM] = {.name = "max",
@@ -239,7 +239,7 @@ const struct Function functions[OPERATION_COUNT] = {
                  .units = UNIT_KEPT,
                  .recurrence = CHOICE,
                  .auxiliary = difference,
-                 .partial_derivatives = along_maximum,
+                 .partial_derivatives = partials_of_maximum,
                  .has_pieces = true,
                  .auxiliary_limit = "sign"},
     [LESS] = {.name = "less",
@@ -257,7 +257,7 @@ const struct Function functions[OPERATION_COUNT] = {
                .units = UNIT_KEPT,
                .recurrence = GUARDED,
                .auxiliary = operand,
-               .partial_derivatives = along_guard},
+               .partial_derivatives = partials_of_guard},
     [SINE] = {.name = "sin", .of_one = sine, .parity = ODD, .recurrence = INTEGRAL, .auxiliary = cosine_of_operand},
     [COSINE] = {.name = "cos",
                 .of_one = cosine,
@@ -413,7 +413,7 @@ const struct Function functions[OPERATION_COUNT] = {
                   .units = UNIT_KEPT,
                   .recurrence = REFLECTION,
                   .auxiliary = operand,
-                  .partial_derivatives = along_absolute,
+                  .partial_derivatives = partials_of_absolute,
                   .has_pieces = true,
                   .auxiliary_limit = "sign"},
     [SIGN] = {.name = "sign",

@@ -228,12 +228,12 @@ static const char *total_energy_description(const struct Model *model) {
   const struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
   bool changes = switches->contact_count + switches->event_count > 0 || model->energies.driven ||
-                 model->given.constraint != NULL || model->linearized ||
+                 model->prescribed.constraint != NULL || model->linearized ||
                  graph_depends_on(graph, model->energies.kinetic.node, TIME) ||
                  graph_depends_on(graph, model->energies.potential.node, TIME) ||
                  graph_depends_on(graph, model->energies.potential.node, STATE) || steps_in_time(model);
   bool has_work = work_of(model) != NULL;
-  if (work_is_of_everything(model)) changes = switches->contact_count + switches->event_count > 0;
+  if (work_includes_all_forces(model)) changes = switches->contact_count + switches->event_count > 0;
   if (changes || (model->forces.any && !has_work)) return "kinetic and potential energy";
   return has_work ? "kinetic and potential energy; changes by nonConservativeWork alone"
                   : "kinetic and potential energy; constant";

@@ -12,8 +12,8 @@ static void append_row(struct Constraints *constraints, const struct Model *mode
   struct Gradient gradient = gradient_by_kinds(graph, target, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
-    bool is_driven = model->given.prescribed_motions[coordinate].given;
-    elements_append(is_driven ? &constraints->driven : &constraints->jacobian, row, coordinate, gradient.values[i]);
+    bool is_prescribed = model->prescribed.motions[coordinate].is_prescribed;
+    elements_append(is_prescribed ? &constraints->driven : &constraints->jacobian, row, coordinate, gradient.values[i]);
   }
 }
 
@@ -33,7 +33,7 @@ static void append_nonsymmetric(struct Constraints *constraints, const struct Mo
   size_t n = model->coordinates.count;
   for (size_t i = 0; i < n; i++) {
     struct Gradient gradient = gradient_by_kinds(graph, model->forces.along[i].node, 1u << ACCELERATION);
-    for (size_t k = 0; k < gradient.count && !model->given.prescribed_motions[i].given; k++) {
+    for (size_t k = 0; k < gradient.count && !model->prescribed.motions[i].is_prescribed; k++) {
       size_t row = (size_t)graph_symbol_of(graph, gradient.symbols[k])->index - n;
       elements_append(&constraints->nonsymmetric, row, i, negate(graph, gradient.values[k]));
       if (!has_element(&constraints->jacobian, row, i)) elements_append(&constraints->jacobian, row, i, ZERO);

@@ -14,12 +14,12 @@ static bool is_velocity(const struct Model *model, Node node) {
   return symbol->kind == VELOCITY || (symbol->kind == INPUT && is_input_rate(model, (size_t)symbol->index));
 }
 
-bool work_is_of_everything(const struct Model *model) {
-  const struct GivenMotion *given = &model->given;
-  bool is_driven = given->inputs_move || given->prescribed_motion_count > 0;
-  return work_of(model) != NULL &&
-         (given->states_move || given->constraint != NULL || (is_driven && model->constraints.count > 0) ||
-          graph_depends_on(model->graph, model->energies.potential.node, STATE));
+bool work_includes_all_forces(const struct Model *model) {
+  const struct PrescribedMotions *prescribed = &model->prescribed;
+  bool is_prescribed = prescribed->inputs_move || prescribed->motion_count > 0;
+  return work_of(model) != NULL && (prescribed->states_move || prescribed->constraint != NULL ||
+                                    (is_prescribed && model->constraints.count > 0) ||
+                                    graph_depends_on(model->graph, model->energies.potential.node, STATE));
 }
 
 Node stored_energy(const struct Model *model, Node potential) {

@@ -8,10 +8,10 @@
 #include "model/model.h"
 
 /*
- * True if <work/> has all work that changes the energy, not that of forces and drives alone: states or constraints move
- * masses, whose work follows from the energy, W' = d(T + U)/dt.
+ * True if <work/> has all work that changes the energy, not only that of forces and prescribed motions: states or
+ * constraints move masses, whose work follows from the energy, W' = d(T + U)/dt.
  */
-bool work_is_of_everything(const struct Model *model);
+bool work_includes_all_forces(const struct Model *model);
 
 /* Returns U - sum v dU/dv, the energy stored by a potential. Terms linear in the velocities store none. */
 Node stored_energy(const struct Model *model, Node potential);

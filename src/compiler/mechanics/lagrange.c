@@ -30,8 +30,8 @@ static void move_block(const struct InertiaBlock *block, Node *all, Node *of_blo
   }
 }
 
-static bool is_driven(const struct Model *model, size_t row) {
-  return row < model->coordinates.count && model->given.prescribed_motions[row].given;
+static bool is_prescribed(const struct Model *model, size_t row) {
+  return row < model->coordinates.count && model->prescribed.motions[row].is_prescribed;
 }
 
 /*
@@ -57,7 +57,7 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
   for (size_t i = count; i < n; i++) other[i] = ZERO;
   for (size_t b = 0; b < inertia->block_count; b++) {
     /* A prescribed coordinate has the M of v' = acceleration, 1; that of a tree is not formed. */
-    if (is_driven(model, inertia->blocks[b].coordinates[0]) || inertia->blocks[b].tree != NULL) continue;
+    if (is_prescribed(model, inertia->blocks[b].coordinates[0]) || inertia->blocks[b].tree != NULL) continue;
     move_block(&inertia->blocks[b], left[1], whole, false);
     move_block(&inertia->blocks[b], other, part, false);
     take_shorter(graph, inertia->blocks[b].count, whole, part);
@@ -66,9 +66,9 @@ static void shorten_inertial_forces(const struct Model *model, const struct Iner
 }
 
 /* Replaces the equation of a prescribed coordinate by v' = acceleration; its residual becomes the driving force. */
-static void give_motion(const struct Model *model, struct Equations *equations, size_t i) {
+static void prescribe_motion(const struct Model *model, struct Equations *equations, size_t i) {
   struct Graph *graph = model->graph;
-  const struct PrescribedMotion *prescribed_motion = &model->given.prescribed_motions[i];
+  const struct PrescribedMotion *prescribed_motion = &model->prescribed.motions[i];
   shorten(graph, 1, &equations->residual[i]);
   equations->reactions[prescribed_motion->reaction] = equations->residual[i];
   equations->right_side[i] = prescribed_motion->acceleration;
@@ -106,7 +106,7 @@ static void derive_motion(const struct Model *model, struct Equations *equations
     Node right = add(graph, force[i], gradient[i]);
     equations->right_side[i] = without_forces(model, subtract(graph, right, left[0][i]));
     equations->residual[i] = subtract(graph, left[1][i], right);
-    if (model->given.prescribed_motions[i].given) give_motion(model, equations, i);
+    if (model->prescribed.motions[i].is_prescribed) prescribe_motion(model, equations, i);
   }
 }
 
@@ -120,7 +120,7 @@ static void add_constraints(const struct Model *model, struct Equations *equatio
     *sum = add(graph, *sum, constraint_force_along(graph, free_ones, k, model->unknowns.forces));
   }
   for (size_t k = 0; k < driven->count; k++) {
-    Node *sum = &equations->reactions[model->given.prescribed_motions[driven->positions[k].column].reaction];
+    Node *sum = &equations->reactions[model->prescribed.motions[driven->positions[k].column].reaction];
     *sum = add(graph, *sum, constraint_force_along(graph, driven, k, model->unknowns.forces));
   }
   for (size_t j = 0; j < constraints->count; j++) {
@@ -175,12 +175,13 @@ static Node power_of_forces(const struct Model *model, const struct Equations *e
   struct Graph *graph = model->graph;
   Node power = ZERO;
   for (size_t i = 0; i < equations->count; i++) {
-    const struct PrescribedMotion *prescribed_motion = &model->given.prescribed_motions[i];
-    Node whole =
-        prescribed_motion->given ? add(graph, force[i], equations->reactions[prescribed_motion->reaction]) : force[i];
+    const struct PrescribedMotion *prescribed_motion = &model->prescribed.motions[i];
+    Node whole = prescribed_motion->is_prescribed
+                     ? add(graph, force[i], equations->reactions[prescribed_motion->reaction])
+                     : force[i];
     power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
   }
-  power = add(graph, power, moving_power(model));
+  power = add(graph, power, power_of_moving_points(model));
   return add(graph, power, model->forces.driven_power.node);
 }
 
@@ -190,7 +191,7 @@ static void derive_energies(const struct Model *model, struct Equations *equatio
   equations->potential = stored_energy(model, model->energies.potential.node);
   equations->total = add(graph, equations->kinetic, equations->potential);
   equations->stated_power = power_of_forces(model, equations, force);
-  if (work_is_of_everything(model))
+  if (work_includes_all_forces(model))
     derivative_along(graph, &equations->total, 1, time_seeds(model, true), &equations->stated_power);
   equations->power = equations->stated_power;
   if (work_of(model) != NULL) equations->power = with_accelerations(model, equations, equations->power);

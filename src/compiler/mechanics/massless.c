@@ -33,7 +33,7 @@ static struct Elements mass_elements(const struct Model *model) {
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
-      if (!model->given.prescribed_motions[i].given && !model->given.prescribed_motions[j].given)
+      if (!model->prescribed.motions[i].is_prescribed && !model->prescribed.motions[j].is_prescribed)
         elements_append(&elements, i, j, row.values[k]);
     }
   }
@@ -109,7 +109,7 @@ static bool find_null_vector(size_t n, double *m, double *z) {
 }
 
 /* Regularizes the constraints with J z != 0. False if all of them were regularized before. */
-static bool hold_motion(struct Matrices *matrices, const double *z) {
+static bool regularize_motion(struct Matrices *matrices, const double *z) {
   const struct Elements *jacobian = &matrices->constraints->jacobian;
   bool has_changed = false;
   for (size_t k = 0, end = 0; k < jacobian->count; k = end) {
@@ -127,7 +127,7 @@ static bool hold_motion(struct Matrices *matrices, const double *z) {
 }
 
 /* Regularizes one null vector of each component. False if nothing changed. */
-static bool hold_motions(struct Matrices *matrices) {
+static bool regularize_motions(struct Matrices *matrices) {
   size_t n = matrices->count;
   struct ConnectedComponents components = couplings(matrices);
   size_t *sizes = allocate(components.count, sizeof *sizes), *indices = indices_in(&components, n, sizes);
@@ -139,7 +139,7 @@ static bool hold_motions(struct Matrices *matrices) {
   for (size_t c = 0; c < components.count; c++) {
     if (find_null_vector(sizes[c], dense[c], z)) {
       for (size_t i = 0; i < n; i++) all[i] = components.of[i] == c ? z[indices[i]] : 0.0;
-      has_changed |= hold_motion(matrices, all);
+      has_changed |= regularize_motion(matrices, all);
       for (size_t i = 0; i < sizes[c]; i++) z[i] = 0.0;
     }
   }
@@ -211,7 +211,7 @@ static void append_regularizations(const struct Matrices *matrices, struct Model
 }
 
 /* Returns the values of all nodes for random symbols, at which M and J are finite if eight trials find such. */
-static double *values_somewhere(const struct Matrices *matrices, const struct Graph *graph) {
+static double *generic_values(const struct Matrices *matrices, const struct Graph *graph) {
   double *symbols = allocate(graph->symbol_count, sizeof *symbols), *values = NULL;
   uint64_t seed = 1;
   bool is_finite = false;
@@ -226,15 +226,15 @@ static double *values_somewhere(const struct Matrices *matrices, const struct Gr
   return values;
 }
 
-void hold_massless_coordinates(struct Model *model) {
+void regularize_massless_coordinates(struct Model *model) {
   if (model->constraints.count == 0 || graph_limit(model->graph) != NULL) return;
   struct Matrices matrices = {.model = model,
                               .count = model->coordinates.count,
                               .mass = mass_elements(model),
                               .constraints = constraints_derive(model),
                               .is_regularized = allocate(model->constraints.count, sizeof(bool))};
-  matrices.values = values_somewhere(&matrices, model->graph);
+  matrices.values = generic_values(&matrices, model->graph);
   bool any = false;
-  while (hold_motions(&matrices)) any = true;
+  while (regularize_motions(&matrices)) any = true;
   if (any) append_regularizations(&matrices, model);
 }

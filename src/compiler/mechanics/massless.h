@@ -13,4 +13,4 @@
 #include "model/model.h"
 
 /* Regularizes M, if constraints determine the motions without inertia. */
-void hold_massless_coordinates(struct Model *model);
+void regularize_massless_coordinates(struct Model *model);

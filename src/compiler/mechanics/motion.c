@@ -7,7 +7,7 @@
 #include "mechanics/switching.h"
 
 struct Equations *motion_of(struct Model *model, struct Diagnostics *diagnostics) {
-  hold_massless_coordinates(model);
+  regularize_massless_coordinates(model);
   struct Equations *equations = equations_derive(model, diagnostics);
   if (equations != NULL && model->linearized) {
     struct Equations *linear = linearize(model, equations, diagnostics);

@@ -53,13 +53,14 @@ void reactions_derive(const struct Model *model, Node *reactions) {
 }
 
 /* Forces at a point that an input moves act on the system through this input. Its drive delivers R, the forces Q. */
-Node moving_power(const struct Model *model) {
+Node power_of_moving_points(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t count = model->inputs.count;
-  if (!model->given.inputs_move) return ZERO;
+  if (!model->prescribed.inputs_move) return ZERO;
   Node *force = forces_along(model, INPUT, count), *undisplaced = undisplaced_symbols(graph), power = ZERO;
   for (size_t i = 0; i + 1 < count; i++)
-    if (!is_input_rate(model, i)) power = add(graph, power, multiply(graph, force[i], model->given.input_rates[i]));
+    if (!is_input_rate(model, i))
+      power = add(graph, power, multiply(graph, force[i], model->prescribed.input_rates[i]));
   substitute(graph, &power, 1, undisplaced, &power);
   return power;
 }

@@ -92,7 +92,7 @@ static Node indicator_of_contact(const struct Model *model, const struct Contact
 }
 
 /* Returns an expression that is positive while the force is between the limits of both directions. */
-static Node left_of_stiction(struct Graph *graph, const struct Friction *friction, Node force) {
+static Node stiction_margin(struct Graph *graph, const struct Friction *friction, Node force) {
   if (friction->stiction != friction->stiction_back) {
     Node forth = subtract(graph, friction->stiction, force), back = add(graph, friction->stiction_back, force);
     return multiply(graph, forth, back);
@@ -105,7 +105,7 @@ static Node indicator_of_friction(const struct Model *model, const struct Fricti
   struct Graph *graph = model->graph;
   if (friction->is_given) return ONE; /* its branch has the indicator */
   Node force = model->unknowns.forces[friction->constraint];
-  Node left = left_of_stiction(graph, friction, force);
+  Node left = stiction_margin(graph, friction, force);
   Node along = multiply(graph, friction->mode, friction->velocity);
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
 }

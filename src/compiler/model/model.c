@@ -28,12 +28,12 @@ struct Variable variable_create(char *name, char *description, long line) {
 
 size_t input_rate_count(const struct Model *model, size_t input) {
   size_t count = 0;
-  while (model->given.input_rates[input + count] != ZERO) count++;
+  while (model->prescribed.input_rates[input + count] != ZERO) count++;
   return count;
 }
 
 bool is_input_rate(const struct Model *model, size_t input) {
-  return input > 0 && model->given.input_rates[input - 1] == model->inputs.items[input].node;
+  return input > 0 && model->prescribed.input_rates[input - 1] == model->inputs.items[input].node;
 }
 
 bool start_follows(const struct Model *model, const struct Variable *variable) {

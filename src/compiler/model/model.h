@@ -86,9 +86,9 @@ struct Regularization {
 
 /* Prescribed motion of a coordinate. */
 struct PrescribedMotion {
-  bool given;        /* false for a coordinate that moves by its equation */
-  Node acceleration; /* a function of inputs, parameters and time */
-  size_t reaction;   /* index of the driving force among the reactions */
+  bool is_prescribed; /* false for a coordinate that moves by its equation */
+  Node acceleration;  /* a function of inputs, parameters and time */
+  size_t reaction;    /* index of the driving force among the reactions */
 };
 
 /* The operating point of a linearization: a value for each symbol of the graph, ZERO if none was given. */
@@ -103,13 +103,13 @@ struct Origin {
 };
 
 /* Motions that inputs or prescribed coordinates impose. */
-struct GivenMotion {
-  Node *input_rates;                           /* [inputs]: the input that is its time derivative; ZERO for none */
-  bool inputs_move;                            /* positions or energies depend on inputs */
-  bool states_move;                            /* positions or kinetic energies depend on states */
-  struct PrescribedMotion *prescribed_motions; /* [coordinates] */
-  size_t prescribed_motion_count;              /* number of prescribed coordinates */
-  const struct Variable *constraint;           /* a rheonomic constraint, whose force does work; NULL for none */
+struct PrescribedMotions {
+  Node *input_rates;                 /* [inputs]: the input that is its time derivative; ZERO for none */
+  bool inputs_move;                  /* positions or energies depend on inputs */
+  bool states_move;                  /* positions or kinetic energies depend on states */
+  struct PrescribedMotion *motions;  /* [coordinates] */
+  size_t motion_count;               /* number of prescribed coordinates */
+  const struct Variable *constraint; /* a rheonomic constraint, whose force does work; NULL for none */
 };
 
 enum ShapeType { SHAPE_PLANE, SHAPE_SPHERE, SHAPE_BOX, SHAPE_CYLINDER, SHAPE_CAPSULE, SHAPE_MESH, SHAPE_ELLIPSOID };
@@ -229,7 +229,7 @@ struct Model {
       constraints; /* each is 0 at all times: a function of coordinates and time, or linear in the velocities */
   struct VariableList reactions; /* forces along the displacements, then driving forces */
   struct Switches switches;
-  struct GivenMotion given;
+  struct PrescribedMotions prescribed;
   struct Mechanism mechanism;
   struct LineDrawing drawing;
   struct Energies energies;

@@ -31,7 +31,7 @@ static Node is_free(struct Graph *graph, const struct Friction *friction) {
 }
 
 /* Returns the same for a velocity that depends on it by a coefficient; a coefficient of 0 leaves the velocity free. */
-static Node is_free_beside(struct Graph *graph, Node is_free, Node coefficient) {
+static Node is_coupled_free(struct Graph *graph, Node is_free, Node coefficient) {
   Node sign = function(graph, SIGN, coefficient, ZERO);
   return add(graph, is_free, subtract(graph, ONE, power_number(graph, sign, 2.0)));
 }
@@ -99,12 +99,12 @@ static void replace_velocity(const struct Model *model, const struct Gear *gears
     for (int side = 0; side < 2; side++) {
       size_t other = gears[i].coordinate[1 - side];
       if (gears[i].coordinate[side] != coordinate || is_replaced[other]) continue;
-      Node is_other_free = is_free_beside(graph, is_free, gears[i].coefficient[1 - side]);
+      Node is_other_free = is_coupled_free(graph, is_free, gears[i].coefficient[1 - side]);
       replace_velocity(model, gears, gear_count, other, is_other_free, is_replaced, replacements);
     }
 }
 
-static void hold_coordinates(struct Model *model) {
+static void replace_velocities(struct Model *model) {
   const struct Switches *switches = &model->switches;
   size_t gear_count, n = model->coordinates.count;
   const struct Gear *gears = read_gears(model, &gear_count);
@@ -112,7 +112,7 @@ static void hold_coordinates(struct Model *model) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     size_t coordinate = coordinate_of(model, &switches->frictions[i], &coefficient);
     if (coordinate == n) continue;
-    Node is_removed = is_free_beside(model->graph, is_free(model->graph, &switches->frictions[i]), coefficient);
+    Node is_removed = is_coupled_free(model->graph, is_free(model->graph, &switches->frictions[i]), coefficient);
     bool *is_replaced = allocate(n, sizeof *is_replaced);
     replace_velocity(model, gears, gear_count, coordinate, is_removed, is_replaced, replacements);
   }
@@ -133,7 +133,7 @@ static bool is_along(struct Graph *graph, Node value, Node f, Node *rest) {
   return !graph_depends_on(graph, *rest, VELOCITY);
 }
 
-static void hold_indicators(struct Model *model) {
+static void replace_in_indicators(struct Model *model) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
@@ -150,6 +150,6 @@ static void hold_indicators(struct Model *model) {
 
 void replace_sticking_velocities(struct Model *model) {
   if (model->switches.friction_count == 0) return;
-  hold_indicators(model);
-  hold_coordinates(model);
+  replace_in_indicators(model);
+  replace_velocities(model);
 }

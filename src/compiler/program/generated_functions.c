@@ -29,7 +29,7 @@ static struct IrFunction *build_derivatives(const struct Program *program, struc
   size_t n = program->equations->count;
   append_accelerations(generator, program->equations, &program->blocks, false);
   const struct NodeList *rates = &program->equations->rates;
-  hold_unknowns(generator, program->equations, &program->blocks, program->expressions->unknowns);
+  define_unknowns(generator, program->equations, &program->blocks, program->expressions->unknowns);
   generator_compute(generator, rates->nodes, rates->count, false);
   for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_at(SPACE_STATE, n + i));
   for (size_t i = 0; i < rates->count; i++) generator_copy(generator, target_slot(2 * n + i), rates->nodes[i]);
@@ -95,7 +95,7 @@ static struct IrFunction *build_directional(const struct Program *program, struc
   size_t n = program->equations->count;
   size_t rates = program->equations->rates.count;
   append_along(program, generator, n, n, expressions->rates_along, rates);
-  hold_solutions(generator, &program->blocks, expressions->unknowns_along);
+  define_solutions(generator, &program->blocks, expressions->unknowns_along);
   generator_compute(generator, expressions->rates_along, rates, false);
   for (size_t i = 0; i < n; i++) ir_copy(generator->ir, target_slot(i), slot_at(SPACE_SEED_STATE, n + i));
   for (size_t i = 0; i < rates; i++) generator_copy(generator, target_slot(2 * n + i), expressions->rates_along[i]);

@@ -27,9 +27,9 @@ struct OpenGroups {
 };
 
 /* True if the object in the cone may join: the group then needs at most 1.5 times the nodes of each object. */
-static bool may_join(const struct Cone *cone, const struct ResultGroup *group, size_t things) {
+static bool may_join(const struct Cone *cone, const struct ResultGroup *group, size_t size_of_object) {
   size_t shortest = smaller(cone->count, group->shortest), count = group->needed.count;
-  if (group->size == 0 || group->size + things > SIZE_LIMIT) return false;
+  if (group->size == 0 || group->size + size_of_object > SIZE_LIMIT) return false;
   for (size_t i = 0; i < cone->count; i++) count += !group->needs[cone->nodes[i]];
   return 2 * count <= 3 * shortest;
 }
@@ -54,9 +54,9 @@ static void add_needs(const struct Cone *cone, struct ResultGroup *group) {
 
 /* Returns the group that the object joins, or a new one in place of the oldest. */
 static struct ResultGroup *find_group(const struct NeededNodes *needs, struct OpenGroups *open, size_t leader,
-                                      size_t things) {
+                                      size_t size_of_object) {
   for (size_t i = 0; i < OPEN_GROUPS; i++)
-    if (may_join(needs->cone, &open->groups[i], things)) return &open->groups[i];
+    if (may_join(needs->cone, &open->groups[i], size_of_object)) return &open->groups[i];
   struct ResultGroup *group = &open->groups[open->next];
   open->next = (open->next + 1) % OPEN_GROUPS;
   begin(needs->graph, group, leader);

@@ -13,7 +13,7 @@
 static void check_work(const struct Reader *reader) {
   const struct Model *model = reader->model;
   const struct Variable *work = work_of(model);
-  if (work != NULL && !model->forces.any && !work_is_of_everything(model))
+  if (work != NULL && !model->forces.any && !work_includes_all_forces(model))
     report_error(reader->diagnostics, work->line, "<work/> without forces; expected a <force> or <dissipation>");
 }
 

@@ -18,7 +18,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "model/given_frictions.h"
+#include "model/prescribed_frictions.h"
 #include "model/sticking_velocities.h"
 #include "read/checks.h"
 #include "read/context/attributes.h"
@@ -66,8 +66,8 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < model->displacements.count; i++)
     append_reaction(model, scope, &model->displacements.items[i], "force of reaction along");
   for (size_t i = 0; i < model->coordinates.count; i++) {
-    if (!model->given.prescribed_motions[i].given) continue;
-    model->given.prescribed_motions[i].reaction = model->reactions.count;
+    if (!model->prescribed.motions[i].is_prescribed) continue;
+    model->prescribed.motions[i].reaction = model->reactions.count;
     append_reaction(model, scope, &model->coordinates.items[i], "force of the drive of");
   }
 }
@@ -135,7 +135,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
                                           attribute(root, "copyright"), attribute(root, "license")};
   expand(reader, root);
   check_definitions_used(reader);
-  check_given(reader);
+  check_overrides(reader);
   number_modes(reader);
   relate_to_time(reader->model, reader->scope);
   declare_constraint_forces(reader->model, reader->scope);
@@ -148,12 +148,12 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   if (reader->options->pull && reader->model->coordinates.count > 0) add_pointer_interaction(reader);
   undisplace_branches(reader);
   if (reader->diagnostics->errors == 0) {
-    find_given_frictions(reader->model);
+    find_prescribed_frictions(reader->model);
     add_sliding_forces_in_planes(reader);
   }
   complete_friction_forces(reader);
   if (reader->diagnostics->errors == 0) replace_sticking_velocities(reader->model);
-  reader->model->forces.any |= reader->model->given.inputs_move;
+  reader->model->forces.any |= reader->model->prescribed.inputs_move;
   check_system(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",

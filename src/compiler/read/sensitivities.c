@@ -53,7 +53,7 @@ static void append_coordinate(struct Model *model, size_t of, const struct Varia
   model->sensitivity_count++;
   model->unknowns.accelerations[index] =
       graph_symbol(graph, ACCELERATION, (int)index, format_text("der(%s)", velocity.name));
-  model->given.prescribed_motions[index] = (struct PrescribedMotion){.given = true, .reaction = reaction};
+  model->prescribed.motions[index] = (struct PrescribedMotion){.is_prescribed = true, .reaction = reaction};
 }
 
 /* Appends the sensitivity of a state. Its rate is set later. */
@@ -96,7 +96,7 @@ static void append_outputs(struct Model *model, const struct Equations *equation
   }
 }
 
-static const char *why_not(const struct Model *model, const struct Equations *equations) {
+static const char *reason_unsupported(const struct Model *model, const struct Equations *equations) {
   if (equations->explicit_form) return "linearizations";
   if (model->mechanism.regularization_count > 0) return "coordinates without mass";
   return NULL;
@@ -119,8 +119,7 @@ static size_t append_reaction(struct Model *model) {
 
 static void make_room_for(struct Model *model, size_t total) {
   model->unknowns.accelerations = reallocate(model->unknowns.accelerations, total, sizeof(Node));
-  model->given.prescribed_motions =
-      reallocate(model->given.prescribed_motions, total, sizeof *model->given.prescribed_motions);
+  model->prescribed.motions = reallocate(model->prescribed.motions, total, sizeof *model->prescribed.motions);
   struct Quantity *along = allocate(total, sizeof *along);
   memcpy(along, model->forces.along, model->coordinates.count * sizeof *along);
   model->forces.along = along;
@@ -134,7 +133,7 @@ static void add_sensitivity(struct Model *model, const struct Equations *equatio
   for (size_t i = 0; i < states; i++) append_state(model, i, &by);
   Node *seeds = direction_of(model, &by, count, first, states, first_state), *along = allocate(rows, sizeof *along);
   derivative_along(model->graph, equations->acceleration, rows, seeds, along);
-  for (size_t i = 0; i < count; i++) model->given.prescribed_motions[first + i].acceleration = along[i];
+  for (size_t i = 0; i < count; i++) model->prescribed.motions[first + i].acceleration = along[i];
   for (size_t j = count; j < rows; j++)
     seeds[model->graph->vertices[model->unknowns.forces[j - count]].left] = along[j];
   append_outputs(model, equations, outputs, &by, seeds);
@@ -145,7 +144,7 @@ static void add_sensitivity(struct Model *model, const struct Equations *equatio
 
 void add_sensitivities(struct Model *model, const struct Equations *equations, const char *const *names, size_t count,
                        struct Diagnostics *diagnostics) {
-  const char *reason = why_not(model, equations);
+  const char *reason = reason_unsupported(model, equations);
   if (reason != NULL)
     report_error(diagnostics, 0, "--along does not support %s; expected a system without them", reason);
   for (size_t k = 0; k < count; k++) {

@@ -50,7 +50,7 @@ static bool follows_second(const struct DerivativeNeed *need, const struct Varia
   const struct Gradient inputs = gradient_by_kinds(model->graph, state->rate, KIND(INPUT));
   for (size_t i = 0; i < inputs.count; i++) {
     const struct Symbol *input = graph_symbol_of(model->graph, inputs.symbols[i]);
-    if (model->given.input_rates[input->index] != ZERO) continue;
+    if (model->prescribed.input_rates[input->index] != ZERO) continue;
     report_missing(need, state, state, input, "derivatives=\"1\" of this <input>");
     return false;
   }
@@ -63,7 +63,7 @@ static bool follows_second(const struct DerivativeNeed *need, const struct Varia
 /* Notes that a state moves a mass, so that what moves the state does work. */
 static void note_moving_state(const struct DerivativeNeed *need, Node node) {
   struct Model *model = need->reader->model;
-  model->given.states_move |= graph_depends_on(model->graph, node, STATE);
+  model->prescribed.states_move |= graph_depends_on(model->graph, node, STATE);
 }
 
 static void require_derivatives(const struct DerivativeNeed *need, Node node) {

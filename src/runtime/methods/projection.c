@@ -204,17 +204,18 @@ static size_t find_without_value(const struct ProjectionWork *work) {
 }
 
 /* Returns the residual of a constraint as a length in units of scale. */
-static double way_of(const struct ProjectionWork *work, size_t constraint, double scale) {
+static double residual_length(const struct ProjectionWork *work, size_t constraint, double scale) {
   double residual = work->residual[constraint];
   return residual == 0.0 ? 0.0 : fabs(residual) / (work->slope[constraint] * scale);
 }
 
 /* Returns the constraint of largest residual above *most, and sets *most to it; constraints.count for none. */
-static size_t find_above(const struct ProjectionWork *work, const double *state, size_t first, double *most) {
+static size_t find_largest_residual(const struct ProjectionWork *work, const double *state, size_t first,
+                                    double *most) {
   size_t worst = lagrangian.constraints.count;
   double scale = largest_scale(state, first);
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
-    double way = way_of(work, j, scale);
+    double way = residual_length(work, j, scale);
     if (way > *most) {
       *most = way;
       worst = j;
@@ -226,7 +227,7 @@ static size_t find_above(const struct ProjectionWork *work, const double *state,
 /* Returns the constraint of largest residual; constraints.count if all are at most fulfilled. */
 static size_t find_violated(const struct ProjectionWork *work, const double *state, size_t first) {
   double most = fulfilled;
-  return find_above(work, state, first, &most);
+  return find_largest_residual(work, state, first, &most);
 }
 
 /*
@@ -241,8 +242,10 @@ static size_t violated_constraint(struct Instance *instance, double time) {
   if (found == none) {
     double most = fulfilled;
     memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-    if (evaluate_residual(instance, time, work.start, POSITIONS)) found = find_above(&work, work.start, 0, &most);
-    if (evaluate_residual(instance, time, work.start, VELOCITIES)) larger = find_above(&work, work.start, n, &most);
+    if (evaluate_residual(instance, time, work.start, POSITIONS))
+      found = find_largest_residual(&work, work.start, 0, &most);
+    if (evaluate_residual(instance, time, work.start, VELOCITIES))
+      larger = find_largest_residual(&work, work.start, n, &most);
     if (larger < none) found = larger;
   }
   instance->singular = singular;
@@ -403,7 +406,7 @@ static bool has_jumped(struct Instance *instance) {
       !evaluate_residual(instance, time, instance->state, POSITIONS))
     return false;
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
-    if (lagrangian.constraints.inputs[j] == NULL || way_of(&work, j, scale) <= largest_jump) continue;
+    if (lagrangian.constraints.inputs[j] == NULL || residual_length(&work, j, scale) <= largest_jump) continue;
     log_message(instance, STATUS_DISCARD,
                 "time %g: the residual of the %s '%s' is %g after a jump of an input: it depends on %s; expected "
                 "inputs that move continuously, as their derivatives say",

@@ -198,7 +198,7 @@ static double exact_interval(const struct Taylor *taylor, double step) {
 }
 
 /* Leaves Euler's method of the series: a root has no series at 0, but leaves the accelerations finite. */
-static void cut_off(const struct Taylor *taylor) {
+static void use_euler_step(const struct Taylor *taylor) {
   for (size_t i = 0; i < lagrangian.state_count; i++)
     for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;
 }
@@ -224,7 +224,7 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
     double size = defect_over(instance, taylor, step);
     if (size <= 1.0) return step;
     if (step <= 2.0 * smallest && isfinite(size)) {
-      cut_off(taylor); /* in a step this short, rounding of time hides all higher terms */
+      use_euler_step(taylor); /* in a step this short, rounding of time hides all higher terms */
       if (isfinite(defect(instance, taylor, step))) return step;
     }
     step = fmax(0.1 * step, fmin(step, smallest));
@@ -263,7 +263,7 @@ void taylor_choose_interval(struct Instance *instance, struct Taylor *taylor, do
   instance->limited_by = limit.function;
   taylor->is_limited = limit.step < predicted;
   double crossing = 0.0;
-  if (predicted == 0.0) cut_off(taylor);
+  if (predicted == 0.0) use_euler_step(taylor);
   if (predicted == 0.0 || limit.function != NULL)
     crossing = crossing_step(instance, taylor, communication_step, limit.step);
   taylor->crosses = crossing > 0.0;

@@ -38,7 +38,7 @@ static void report_impossible_start(struct Instance *instance, const char *reaso
 }
 
 /* Computes the reported values on the copy, without messages: the function that starts there will report failures. */
-static void find_silently(struct Instance *instance) {
+static void resolve_silently(struct Instance *instance) {
   char reason[MESSAGE_LENGTH] = "";
   struct Log log = instance->log;
   uint64_t reported_singularity = instance->reported_singularity;
@@ -60,7 +60,7 @@ void reading_begin(struct Instance *instance) {
   if (is_new || !instance->shown_is_found) memcpy(instance->shown, instance->fmu_state, fmu_state_size());
   exchange_fmu_states(instance);
   instance->is_reading = true;
-  if (is_new) find_silently(instance);
+  if (is_new) resolve_silently(instance);
   instance->modes_stay = instance->shown_is_found;
   instance->parameter_constants_are_stale = true;
 }

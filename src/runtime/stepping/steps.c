@@ -45,7 +45,7 @@ static const char usual_remedy[] = "retrying will not help; restore an earlier s
  * since; after a restored state it must be able to resume. Otherwise it restarts, from a state that fulfils the
  * constraints.
  */
-static enum StepResult make_ready(struct Instance *instance, const struct CommunicationStep *step) {
+static enum StepResult prepare_solver(struct Instance *instance, const struct CommunicationStep *step) {
   const struct Solver *solver = lagrangian.solver;
   struct FmuState *fmu_state = instance->fmu_state;
   if (instance->solver_memory == NULL && !solver->create(instance)) return STEP_FAILED;
@@ -215,7 +215,7 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   const struct Span *last = &instance->fmu_state->last_step;
   *reached = step->end;
   if (lagrangian.solver == NULL) return STEP_DONE;
-  enum StepResult readiness = make_ready(instance, step);
+  enum StepResult readiness = prepare_solver(instance, step);
   if (readiness != STEP_DONE) {
     *reached = step->start;
     return readiness;

@@ -51,8 +51,8 @@ static Real square_by_mass(const size_t *start, const size_t *column, const int 
  * Returns minus the pivot of constraint i as w^T M w, where w is the motion that the constraints before it leave free
  * along it. This has the digits of w, while the pivot is a difference of squares. w is refined once by its residual.
  */
-static Real hold_of(const size_t *start, const size_t *column, const int *coordinate, const Real *m, const Real *matrix,
-                    size_t i, Real *w) {
+static Real refined_pivot(const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+                          const Real *matrix, size_t i, Real *w) {
   Real *rest = w + i + 1;
   combine(start, column, m, i, w);
   memset(rest, 0, (i + 1) * sizeof *rest);
@@ -75,16 +75,16 @@ static size_t slot_of_null_vector(size_t n, const size_t *start, size_t c) {
 }
 
 /* Returns the component of c + 1 forces along a null-space vector, in units of the vector. */
-static Real share_along(size_t c, const Real *null_vector, const Real *force) {
+static Real component_along(size_t c, const Real *null_vector, const Real *force) {
   Real product = force[c];
   for (size_t k = 0; k < c; k++) product += null_vector[k] * force[k];
   return product * null_vector[c];
 }
 
 /* Subtracts from the forces their part along a null-space vector. */
-static void take_along(size_t c, const Real *null_vector, Real *force) {
+static void subtract_component(size_t c, const Real *null_vector, Real *force) {
   if (!ANYWHERE(null_vector[c] > 0.0)) return;
-  Real share = share_along(c, null_vector, force);
+  Real share = component_along(c, null_vector, force);
   for (size_t k = 0; k < c; k++) force[k] -= share * null_vector[k];
   force[c] -= share;
 }
@@ -104,7 +104,7 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
   for (size_t row = 0, k = 0; row < i; row++)
     if (coordinate[row] < 0) null_vector[k++] = forces[row];
   null_vector[c] = REAL(1.0);
-  for (size_t j = 0; j < 2 * c; j++) take_along(j % c, m + slot_of_null_vector(n, start, j % c), null_vector);
+  for (size_t j = 0; j < 2 * c; j++) subtract_component(j % c, m + slot_of_null_vector(n, start, j % c), null_vector);
   for (size_t k = 0; k < c; k++) length += null_vector[k] * null_vector[k];
   null_vector[c] = WHERE(follows, 1.0 / length, 0.0);
 }
@@ -140,7 +140,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     }
     Real hold = -pivot;
     Condition doubts = saddle_is_doubtful(hold, delassus, *weakest);
-    if (ANYWHERE(doubts)) hold = WHERE(doubts, hold_of(start, column, coordinate, m, matrix, i, work), hold);
+    if (ANYWHERE(doubts)) hold = WHERE(doubts, refined_pivot(start, column, coordinate, m, matrix, i, work), hold);
     m[last] = saddle_pivot(hold, delassus, weakest);
   }
   saddle_null_vector(n, start, column, coordinate, m);
@@ -165,14 +165,14 @@ static void shorten_forces(size_t n, const size_t *start, const int *coordinate,
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
     if (coordinate[i] < 0) force[count++] = x[i];
-  for (size_t c = 0; c < count; c++) take_along(c, m + slot_of_null_vector(n, start, c), force);
+  for (size_t c = 0; c < count; c++) subtract_component(c, m + slot_of_null_vector(n, start, c), force);
   for (size_t i = n; i-- > 0;)
     if (coordinate[i] < 0) x[i] = force[--count];
 }
 
 /* Corrects the forces in x so that they have the same J^T F as others. */
-static void carry_load(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
-                       const Real *others, Real *x) {
+static void restore_load(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+                         const Real *others, Real *x) {
   Real *missing = x + n, *load = missing + n;
   for (size_t i = 0; i < n; i++) {
     missing[i] = coordinate[i] < 0 ? x[i] - others[i] : REAL(0.0);
@@ -205,6 +205,6 @@ void saddle_least_forces(size_t n, const size_t *start, const size_t *column, co
   if (!has_null_vectors(n, start, coordinate, m)) return;
   memcpy(given, x, n * sizeof *given);
   shorten_forces(n, start, coordinate, m, x);
-  carry_load(n, start, column, coordinate, m, given, x);
+  restore_load(n, start, column, coordinate, m, given, x);
   shorten_forces(n, start, coordinate, m, x);
 }

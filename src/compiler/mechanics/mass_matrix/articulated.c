@@ -76,7 +76,7 @@ static struct SpatialInertia eliminate_link(struct Graph *graph, struct Articula
   const struct SpatialVector *force = set_masses(graph, item, &inertia);
   item->factor = factors_create(graph, &item->pattern, item->mass);
   set_gains(graph, item, force);
-  for (size_t i = 0; i < link->count; i++) inertia = spatial_inertia_less(graph, &inertia, item->gain[i], force[i]);
+  for (size_t i = 0; i < link->count; i++) inertia = spatial_inertia_subtract(graph, &inertia, item->gain[i], force[i]);
   for (size_t i = 0; i < link->count && !link->has_inertia; i++) {
     int component = only_component(link->motion_subspace[i]);
     if (component >= 0) clear_component(&inertia, component);

@@ -177,7 +177,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of prescribed motions depends on accelerations, which are expressions unless there are constraints. */
   bool power_has_accelerations = constraint_block->count == 0 &&
-                                 (model->given.prescribed_motion_count > 0 || model->given.inputs_move) &&
+                                 (model->prescribed.motion_count > 0 || model->prescribed.inputs_move) &&
                                  work_of(model) != NULL;
   bool unroll_all = power_has_accelerations || model->unrolled || is_linear;
   for (size_t b = 0; b < inertia->block_count; b++) {

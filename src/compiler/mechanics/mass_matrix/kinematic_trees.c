@@ -56,7 +56,7 @@ static void find_coordinates(const struct TreeBuilder *builder, struct TreeLink 
   for (size_t i = 0; i < cone->count; i++) {
     if (!is_symbol(graph, cone->nodes[i], VELOCITY)) continue;
     size_t coordinate = (size_t)graph_symbol_of(graph, cone->nodes[i])->index;
-    if (builder->model->given.prescribed_motions[coordinate].given || index_in_link(link, coordinate) < link->count)
+    if (builder->model->prescribed.motions[coordinate].is_prescribed || index_in_link(link, coordinate) < link->count)
       continue;
     append_row(link, coordinate);
   }
@@ -182,7 +182,7 @@ static void add_further_inertia(struct TreeBuilder *builder, Node regularization
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
-      if (model->given.prescribed_motions[i].given || model->given.prescribed_motions[j].given) continue;
+      if (model->prescribed.motions[i].is_prescribed || model->prescribed.motions[j].is_prescribed) continue;
       if (builder->link_of[i] == builder->link_of[j] && builder->link_of[i] != NO_LINK)
         add_inertia(&builder->trees->items[builder->link_of[i]], i, j, row.values[k]);
       else builder->is_elsewhere[i] = builder->is_elsewhere[j] = true;
@@ -277,7 +277,7 @@ static void set_constraints(struct TreeBuilder *builder, const struct Constraint
 }
 
 /* Returns, for each component, whether it has enough links and is deep enough on average. */
-static bool *find_deep(const struct KinematicTrees *trees, const struct ConnectedComponents *components) {
+static bool *are_deep_trees(const struct KinematicTrees *trees, const struct ConnectedComponents *components) {
   double *depth = allocate(trees->count, sizeof *depth), *sum = allocate(components->count, sizeof *sum),
          *count = allocate(components->count, sizeof *count);
   size_t *moving = allocate(components->count, sizeof *moving);
@@ -300,7 +300,7 @@ static bool *find_deep(const struct KinematicTrees *trees, const struct Connecte
 static bool choose_trees(struct TreeBuilder *builder, const struct ConnectedComponents *components) {
   struct KinematicTrees *trees = builder->trees;
   size_t n = builder->row_count;
-  bool *is_tree = find_deep(trees, components), any = false;
+  bool *is_tree = are_deep_trees(trees, components), any = false;
   for (size_t i = 0; i < n; i++)
     if (builder->is_elsewhere[i] || builder->link_of[i] == NO_LINK) is_tree[components->of[i]] = false;
   for (size_t i = 0; i < n; i++) {

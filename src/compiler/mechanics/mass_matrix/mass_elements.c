@@ -25,14 +25,14 @@ static struct Elements differentiate_momenta(const struct Model *model, const No
   struct Elements elements = elements_create();
   for (size_t i = 0; i < count && graph_limit(graph) == NULL; i++) {
     if (tree_of[i] != NO_TREE) continue;
-    if (model->given.prescribed_motions[i].given) {
+    if (model->prescribed.motions[i].is_prescribed) {
       elements_append(&elements, i, i, ONE);
       continue;
     }
     struct Gradient row = gradient_by_kinds(graph, momentum[i], 1u << VELOCITY);
     for (size_t k = 0; k < row.count; k++) {
       size_t j = (size_t)graph_symbol_of(graph, row.symbols[k])->index;
-      if (j <= i && !model->given.prescribed_motions[j].given) elements_append(&elements, i, j, row.values[k]);
+      if (j <= i && !model->prescribed.motions[j].is_prescribed) elements_append(&elements, i, j, row.values[k]);
     }
   }
   return elements;

@@ -68,17 +68,18 @@ struct SpatialInertia spatial_inertia_add(struct Graph *graph, const struct Spat
 }
 
 /* Returns matrix - column row^T. */
-static struct Matrix less_product(struct Graph *graph, struct Matrix matrix, struct Vector column, struct Vector row) {
+static struct Matrix subtract_outer_product(struct Graph *graph, struct Matrix matrix, struct Vector column,
+                                            struct Vector row) {
   for (int i = 0; i < 3; i++)
     matrix.row[i] = vector_subtract(graph, matrix.row[i], vector_scale(graph, column.along[i], row));
   return matrix;
 }
 
-struct SpatialInertia spatial_inertia_less(struct Graph *graph, const struct SpatialInertia *inertia,
-                                           struct SpatialVector gain, struct SpatialVector force) {
-  struct SpatialInertia rest = {.mass = less_product(graph, inertia->mass, gain.linear, force.linear)};
-  rest.coupling = less_product(graph, inertia->coupling, gain.linear, force.angular);
-  rest.moment = less_product(graph, inertia->moment, gain.angular, force.angular);
+struct SpatialInertia spatial_inertia_subtract(struct Graph *graph, const struct SpatialInertia *inertia,
+                                               struct SpatialVector gain, struct SpatialVector force) {
+  struct SpatialInertia rest = {.mass = subtract_outer_product(graph, inertia->mass, gain.linear, force.linear)};
+  rest.coupling = subtract_outer_product(graph, inertia->coupling, gain.linear, force.angular);
+  rest.moment = subtract_outer_product(graph, inertia->moment, gain.angular, force.angular);
   mirror(&rest.mass);
   mirror(&rest.moment);
   return rest;

@@ -35,8 +35,8 @@ struct SpatialInertia spatial_inertia_add(struct Graph *graph, const struct Spat
                                           const struct SpatialInertia *b);
 
 /* Returns inertia - gain force^T, which must be symmetric. */
-struct SpatialInertia spatial_inertia_less(struct Graph *graph, const struct SpatialInertia *inertia,
-                                           struct SpatialVector gain, struct SpatialVector force);
+struct SpatialInertia spatial_inertia_subtract(struct Graph *graph, const struct SpatialInertia *inertia,
+                                               struct SpatialVector gain, struct SpatialVector force);
 
 /* Returns the force that gives a motion to the inertia. */
 struct SpatialVector spatial_inertia_apply(struct Graph *graph, const struct SpatialInertia *inertia,

@@ -136,7 +136,7 @@ static void append_block(struct CodeGenerator *generator, const struct Equations
               slot_at(SPACE_RIGHT_SIDE, looped->first_right_side + i));
 }
 
-void hold_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, const Node *symbol) {
+void define_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, const Node *symbol) {
   for (size_t b = 0; b < blocks->count; b++) {
     const struct LoopedBlock *looped = &blocks->items[b];
     for (size_t i = 0; i < looped->block->count; i++)
@@ -145,12 +145,12 @@ void hold_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *
   }
 }
 
-void hold_unknowns(struct CodeGenerator *generator, const struct Equations *equations,
-                   const struct LoopedBlocks *blocks, const Node *symbol) {
+void define_unknowns(struct CodeGenerator *generator, const struct Equations *equations,
+                     const struct LoopedBlocks *blocks, const Node *symbol) {
   if (!rates_use_unknowns(generator->graph, equations)) return;
   for (size_t b = 0; b < blocks->count; b++)
     if (has_least_forces(blocks->items[b].block)) ir_append(generator->ir, LEAST_FORCES, (Slot)b, 0, 0, 0);
-  hold_solutions(generator, blocks, symbol);
+  define_solutions(generator, blocks, symbol);
 }
 
 void append_accelerations(struct CodeGenerator *generator, const struct Equations *equations,

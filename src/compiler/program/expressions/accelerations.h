@@ -41,14 +41,14 @@ void append_accelerations(struct CodeGenerator *generator, const struct Equation
                           const struct LoopedBlocks *blocks, bool with_forces);
 
 /* Declares the solution of append_solution() as the value of each row's symbol, until the next solution. */
-void hold_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, const Node *symbol);
+void define_solutions(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, const Node *symbol);
 
 /*
  * Does the same after append_accelerations() for the unknowns, if rates of first-order states depend on them;
  * constraint forces become those of least norm.
  */
-void hold_unknowns(struct CodeGenerator *generator, const struct Equations *equations,
-                   const struct LoopedBlocks *blocks, const Node *symbol);
+void define_unknowns(struct CodeGenerator *generator, const struct Equations *equations,
+                     const struct LoopedBlocks *blocks, const Node *symbol);
 
 /* Copies the elements of the block, which must be computed, to SPACE_MASS. */
 void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *looped);

@@ -114,7 +114,7 @@ static void add_impulse(const struct Model *model, Node along, enum SymbolKind k
   struct Gradient gradient = gradient_by_kinds(graph, along, 1u << kind);
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
-    if (model->given.prescribed_motions[coordinate].given) continue;
+    if (model->prescribed.motions[coordinate].is_prescribed) continue;
     impulse[coordinate] = add(graph, impulse[coordinate], multiply(graph, seed, gradient.values[i]));
   }
 }

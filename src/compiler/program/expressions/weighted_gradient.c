@@ -35,8 +35,8 @@ static bool is_symmetric(const struct Inertia *inertia) {
 }
 
 /* Returns the outputs and the rates of the first-order states, weighted by their seeds. */
-static struct WeightedSum what_is_read(struct Graph *graph, const struct Equations *equations,
-                                       const struct Interface *interface, const Node *result) {
+static struct WeightedSum weighted_results(struct Graph *graph, const struct Equations *equations,
+                                           const struct Interface *interface, const Node *result) {
   struct WeightedSum sum = {0};
   for (size_t i = 0; i < interface->count; i++) {
     const struct ScalarVariable *entry = &interface->variables[i].entry;
@@ -107,7 +107,7 @@ struct WeightedGradient *weighted_gradient_create(const struct Model *model, con
   struct WeightedGradient *gradient = allocate(1, sizeof *gradient);
   gradient->right_side = allocate(rows, sizeof(Node));
   gradient->multiplier = allocate(rows, sizeof(Node));
-  struct WeightedSum sum = what_is_read(graph, equations, interface, result);
+  struct WeightedSum sum = weighted_results(graph, equations, interface, result);
   weighted_gradient_of(graph, sum.targets.nodes, sum.weights.nodes, sum.targets.count, ACCELERATION, rows,
                        gradient->right_side);
   for (size_t i = 0; i < equations->count; i++)

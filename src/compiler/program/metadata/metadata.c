@@ -6,7 +6,7 @@
 #include "program/metadata/constraint_metadata.h"
 #include "program/metadata/inertia_names.h"
 
-static double or_else(double value, double otherwise) {
+static double value_or(double value, double otherwise) {
   return isnan(value) ? otherwise : value;
 }
 
@@ -14,9 +14,9 @@ static const struct ScalarVariable *variables_of(const struct Interface *interfa
   struct ScalarVariable *variables = allocate(interface->count, sizeof *variables);
   for (size_t i = 0; i < interface->count; i++) {
     variables[i] = interface->variables[i].entry;
-    variables[i].start = or_else(variables[i].start, 0.0);
-    variables[i].minimum = or_else(variables[i].minimum, -INFINITY);
-    variables[i].maximum = or_else(variables[i].maximum, INFINITY);
+    variables[i].start = value_or(variables[i].start, 0.0);
+    variables[i].minimum = value_or(variables[i].minimum, -INFINITY);
+    variables[i].maximum = value_or(variables[i].maximum, INFINITY);
   }
   return variables;
 }
@@ -40,7 +40,7 @@ static const double *nominals_of(const struct Interface *interface) {
   double *nominal = allocate(interface->state_count, sizeof *nominal);
   for (size_t i = 0; i < interface->count; i++)
     if (interface->variables[i].entry.kind == VARIABLE_STATE)
-      nominal[interface->variables[i].entry.index] = or_else(interface->variables[i].nominal, 1.0);
+      nominal[interface->variables[i].entry.index] = value_or(interface->variables[i].nominal, 1.0);
   return nominal;
 }
 
@@ -73,7 +73,7 @@ static struct StepMetadata step_metadata_of(const struct Program *program) {
   const struct Model *model = program->model;
   return (struct StepMetadata){.nominal = nominals_of(program->interface),
                                .tolerance = interface_tolerance(model),
-                               .max_step = or_else(model->solver.max_step, INFINITY),
+                               .max_step = value_or(model->solver.max_step, INFINITY),
                                .max_steps = interface_max_steps(model),
                                .work = program->work,
                                .operations = program->operations,

@@ -310,7 +310,7 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   program->start = generator_begin(generator);
   compute_before_blocks(builder, generator);
   append_accelerations(generator, equations, blocks, false);
-  hold_unknowns(generator, equations, blocks, expressions->unknowns);
+  define_unknowns(generator, equations, blocks, expressions->unknowns);
   compute_first(builder, generator, equations->rates.nodes, equations->rates.count);
   copy_first(&rows, generator);
   for (size_t i = 0; i < n; i++) ir_copy(program->start, target_slot(i), slot_at(SPACE_STATE, n + i));

@@ -4,7 +4,7 @@
 #include "model/model.h"
 #include "read/context/reader_options.h"
 #include "read/expressions/parser.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 #include "read/xml/nodes.h"
 
 /* The passes over the list of elements, in this order. Each uses names that earlier passes defined. */

@@ -63,6 +63,6 @@ void check_constraint(struct Reader *reader, const struct Variable *constraint) 
                  "the constraint '%s' is not linear in the velocities; expected one of coordinates and time, or one "
                  "linear in the velocities, as of rolling without slipping",
                  constraint->name);
-  else if (is_moving(model, constraint->node)) model->given.constraint = constraint;
+  else if (is_moving(model, constraint->node)) model->prescribed.constraint = constraint;
   if (graph_depends_on(graph, constraint->node, INPUT)) require_rates(reader, constraint);
 }

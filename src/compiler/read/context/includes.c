@@ -12,7 +12,7 @@
 struct Includes {
   struct Names *sources;   /* prefix -> struct Source */
   struct Names *documents; /* canonical path and options for robots -> struct Document */
-  struct Names *given;     /* full name -> struct Given */
+  struct Names *overrides; /* full name -> struct Override */
 };
 
 /* A parsed file; NULL if it has errors. */
@@ -141,29 +141,29 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
 }
 
 /* Appends an override of a name, after those of outer <include>s. */
-static void add_given(struct Reader *reader, const char *full_name, struct Given given) {
-  struct Given *added = allocate(1, sizeof *added), *last = names_find(reader->includes->given, full_name);
-  *added = given;
+static void add_override(struct Reader *reader, const char *full_name, struct Override override) {
+  struct Override *added = allocate(1, sizeof *added), *last = names_find(reader->includes->overrides, full_name);
+  *added = override;
   while (last != NULL && last->inner != NULL) last = last->inner;
   if (last != NULL) last->inner = added;
-  else names_set(reader->includes->given, full_name, added);
+  else names_set(reader->includes->overrides, full_name, added);
 }
 
-static bool is_given_in(const struct Given *given, const struct Source *source) {
-  while (given != NULL && given->source != source) given = given->inner;
-  return given != NULL;
+static bool is_overridden_in(const struct Override *overrides, const struct Source *source) {
+  while (overrides != NULL && overrides->source != source) overrides = overrides->inner;
+  return overrides != NULL;
 }
 
-static void note_given(struct Reader *reader, const struct Source *source) {
+static void note_overrides(struct Reader *reader, const struct Source *source) {
   for (xmlNodePtr node = source->include->children; node != NULL; node = node->next) {
     char *text = node->type == XML_ELEMENT_NODE ? attribute(node, "name") : NULL;
     if (text == NULL) continue;
     char *name = parse_name(reader->scope, text, location_of(node, "name", 0), true);
     char *full_name = format_text("%s%s", source->prefix, name != NULL ? name : "");
-    if (is_given_in(names_find(reader->includes->given, full_name), source->outer))
+    if (is_overridden_in(names_find(reader->includes->overrides, full_name), source->outer))
       report_at(reader, node, "'%s' is given twice; expected it once", name);
     else if (name != NULL)
-      add_given(reader, full_name, (struct Given){.node = node, .source = source->outer, .target = source});
+      add_override(reader, full_name, (struct Override){.node = node, .source = source->outer, .target = source});
   }
 }
 
@@ -178,7 +178,7 @@ static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) 
     return;
   xmlDocPtr document = document_of(reader, source);
   if (document != NULL) source->root = xmlDocGetRootElement(document);
-  if (document != NULL) note_given(reader, source);
+  if (document != NULL) note_overrides(reader, source);
 }
 
 static struct Source *create_source(struct Reader *reader, xmlNodePtr node, const char *name, const char *prefix) {
@@ -210,67 +210,68 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node) {
 }
 
 /* True if the override has the element name of the declaration. Reports a wrong name at its first use. */
-static bool check_kind(struct Reader *reader, struct Given *given, const char *element, const char *name) {
-  const char *as = (const char *)given->node->name;
+static bool check_kind(struct Reader *reader, struct Override *overrides, const char *element, const char *name) {
+  const char *as = (const char *)overrides->node->name;
   bool is_right = strcmp(element, as) == 0;
-  if (!given->is_used && !is_right) {
-    struct Source *present = source_enter(reader, given->source);
-    report_error(reader->diagnostics, line_of(given->node), "'%s' is not a <%s> of '%s'; expected <%s name=...>",
-                 name + strlen(given->target->prefix), as, given->target->file, element);
+  if (!overrides->is_used && !is_right) {
+    struct Source *present = source_enter(reader, overrides->source);
+    report_error(reader->diagnostics, line_of(overrides->node), "'%s' is not a <%s> of '%s'; expected <%s name=...>",
+                 name + strlen(overrides->target->prefix), as, overrides->target->file, element);
     source_enter(reader, present);
   }
-  given->is_used = true;
+  overrides->is_used = true;
   return is_right;
 }
 
-const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name) {
-  struct Given *outermost = name != NULL ? names_find(reader->includes->given, name) : NULL;
+const struct Override *overrides_of(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct Override *outermost = name != NULL ? names_find(reader->includes->overrides, name) : NULL;
   bool is_right = true;
-  for (struct Given *given = outermost; given != NULL; given = given->inner)
-    is_right &= check_kind(reader, given, (const char *)node->name, name);
+  for (struct Override *overrides = outermost; overrides != NULL; overrides = overrides->inner)
+    is_right &= check_kind(reader, overrides, (const char *)node->name, name);
   return is_right ? outermost : NULL;
 }
 
-const struct Given *giver_of(const struct Given *given, const char *attribute) {
-  while (given != NULL && !has_attribute(given->node, attribute)) given = given->inner;
-  return given;
+const struct Override *override_of_attribute(const struct Override *overrides, const char *attribute) {
+  while (overrides != NULL && !has_attribute(overrides->node, attribute)) overrides = overrides->inner;
+  return overrides;
 }
 
-const struct Given *giver_of_value(const struct Given *given) {
-  while (given != NULL && !has_attribute(given->node, "value") && !has_attribute(given->node, "start"))
-    given = given->inner;
-  return given != NULL && has_attribute(given->node, "value") ? given : NULL;
+const struct Override *override_of_value(const struct Override *overrides) {
+  while (overrides != NULL && !has_attribute(overrides->node, "value") && !has_attribute(overrides->node, "start"))
+    overrides = overrides->inner;
+  return overrides != NULL && has_attribute(overrides->node, "value") ? overrides : NULL;
 }
 
-struct Source *enter_giver(struct Reader *reader, const struct Given *giver, xmlNodePtr *node) {
-  if (giver != NULL) *node = giver->node;
-  return source_enter(reader, giver != NULL ? giver->source : reader->source);
+struct Source *enter_override(struct Reader *reader, const struct Override *override, xmlNodePtr *node) {
+  if (override != NULL) *node = override->node;
+  return source_enter(reader, override != NULL ? override->source : reader->source);
 }
 
-bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *name,
-                            double *value) {
-  struct Source *present = enter_giver(reader, giver_of(given, name), &node);
+bool overridden_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Override *overrides,
+                                 const char *name, double *value) {
+  struct Source *present = enter_override(reader, override_of_attribute(overrides, name), &node);
   bool right = number_attribute(reader, node, name, value);
   source_enter(reader, present);
   return right;
 }
 
-static void report_unused(struct Reader *reader, const struct Given *given, const char *full_name) {
-  struct Source *present = source_enter(reader, given->source);
-  const char *name = full_name + strlen(given->target->prefix);
-  reader->scope->prefix = given->target->prefix;
+static void report_unused(struct Reader *reader, const struct Override *overrides, const char *full_name) {
+  struct Source *present = source_enter(reader, overrides->source);
+  const char *name = full_name + strlen(overrides->target->prefix);
+  reader->scope->prefix = overrides->target->prefix;
   const char *similar = scope_similar_name(reader->scope, name);
-  report_error(reader->diagnostics, line_of(given->node), "'%s' has no <%s> '%s'; %s%s%s", given->target->file,
-               (const char *)given->node->name, name, similar != NULL ? "did you mean '" : "expected one of its names",
-               similar != NULL ? similar : "", similar != NULL ? "'?" : "");
+  report_error(reader->diagnostics, line_of(overrides->node), "'%s' has no <%s> '%s'; %s%s%s", overrides->target->file,
+               (const char *)overrides->node->name, name,
+               similar != NULL ? "did you mean '" : "expected one of its names", similar != NULL ? similar : "",
+               similar != NULL ? "'?" : "");
   source_enter(reader, present);
 }
 
-void check_given(struct Reader *reader) {
-  const struct Names *names = reader->includes->given;
+void check_overrides(struct Reader *reader) {
+  const struct Names *names = reader->includes->overrides;
   for (size_t i = 0; i < names->capacity; i++) {
-    const struct Given *given = names->slots[i].text != NULL ? names->slots[i].meaning : NULL;
-    for (; given != NULL; given = given->inner)
-      if (!given->is_used) report_unused(reader, given, names->slots[i].text);
+    const struct Override *overrides = names->slots[i].text != NULL ? names->slots[i].meaning : NULL;
+    for (; overrides != NULL; overrides = overrides->inner)
+      if (!overrides->is_used) report_unused(reader, overrides, names->slots[i].text);
   }
 }

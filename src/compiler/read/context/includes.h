@@ -19,11 +19,11 @@ struct Source {
 };
 
 /* An override of a declaration by an <include>, in a list that begins with the outermost <include>. */
-struct Given {
+struct Override {
   xmlNodePtr node;             /* the overriding element in the <include> */
   struct Source *source;       /* of the overriding element */
   const struct Source *target; /* the included file with the declaration */
-  struct Given *inner;         /* override by the next inner <include>; NULL for none */
+  struct Override *inner;      /* override by the next inner <include>; NULL for none */
   bool is_used;
 };
 
@@ -41,20 +41,20 @@ struct Source *source_enter(struct Reader *reader, struct Source *source);
 char *path_beside(const struct Reader *reader, const char *file);
 
 /* Returns the overrides of the element of this full name; NULL for none. Reports those by other elements. */
-const struct Given *given_for(struct Reader *reader, xmlNodePtr node, const char *name);
+const struct Override *overrides_of(struct Reader *reader, xmlNodePtr node, const char *name);
 
 /* Returns the outermost override with this attribute; NULL for none. */
-const struct Given *giver_of(const struct Given *given, const char *attribute);
+const struct Override *override_of_attribute(const struct Override *overrides, const char *attribute);
 
 /* Returns the outermost override with a value, unless one further out has a start; NULL for none. */
-const struct Given *giver_of_value(const struct Given *given);
+const struct Override *override_of_value(const struct Override *overrides);
 
 /* Enters the file of an override, unless NULL, and sets the node to its element. Returns the previous file. */
-struct Source *enter_giver(struct Reader *reader, const struct Given *giver, xmlNodePtr *node);
+struct Source *enter_override(struct Reader *reader, const struct Override *override, xmlNodePtr *node);
 
 /* Like number_attribute(), for the outermost override with the attribute, else for the node itself. */
-bool given_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *name,
-                            double *value);
+bool overridden_number_attribute(struct Reader *reader, xmlNodePtr node, const struct Override *overrides,
+                                 const char *name, double *value);
 
 /* Reports overrides of elements that do not exist. */
-void check_given(struct Reader *reader);
+void check_overrides(struct Reader *reader);

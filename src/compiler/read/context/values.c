@@ -17,7 +17,7 @@ static bool scale_of(const char *unit, struct Dimension *dimension, struct UnitS
 }
 
 /* Returns the unit after the number at the beginning of a text; NULL if either is missing. */
-static const char *unit_behind(const char *text, double *number) {
+static const char *unit_after(const char *text, double *number) {
   char *end;
   *number = strtod(text, &end);
   if (end == text || strpbrk(text, "xX") == text + 1) return NULL;
@@ -32,7 +32,7 @@ static bool is_cycle_for_angle(const char *unit, struct Dimension own, struct Di
 
 bool value_has_unit(const char *text) {
   double number;
-  return unit_behind(text, &number) != NULL;
+  return unit_after(text, &number) != NULL;
 }
 
 bool value_of_option(const char *option, const char *text, const char *unit, struct Diagnostics *diagnostics,
@@ -47,23 +47,23 @@ bool value_read(const char *text, const char *unit, struct Diagnostics *diagnost
   struct Dimension own, expected;
   struct UnitScale from, to;
   double number;
-  const char *behind = unit_behind(text, &number);
-  if (behind == NULL) {
+  const char *after = unit_after(text, &number);
+  if (after == NULL) {
     struct Scope *scope = scope_create(graph_create(), diagnostics);
     define_language(scope);
     return parse_number(scope, text, (struct Location){.what = "the value"}, value);
   }
-  if (strcmp(behind, unit) == 0) {
+  if (strcmp(after, unit) == 0) {
     *value = number;
     return isfinite(number);
   }
-  if (!scale_of(behind, &own, &from)) {
-    report_error(diagnostics, 0, "the unit '%s' of '%s' is not known; expected a value in %s", behind, text, unit);
+  if (!scale_of(after, &own, &from)) {
+    report_error(diagnostics, 0, "the unit '%s' of '%s' is not known; expected a value in %s", after, text, unit);
     return false;
   }
   bool is_known = scale_of(unit, &expected, &to);
-  if (!is_known || !dimension_agrees(own, expected) || is_cycle_for_angle(behind, own, expected)) {
-    report_error(diagnostics, 0, "'%s' is in %s; expected a value in %s", text, behind, unit);
+  if (!is_known || !dimension_agrees(own, expected) || is_cycle_for_angle(after, own, expected)) {
+    report_error(diagnostics, 0, "'%s' is in %s; expected a value in %s", text, after, unit);
     return false;
   }
   *value = (number * from.factor + from.offset - to.offset) / to.factor;

@@ -14,8 +14,9 @@ Node append_input(struct Reader *reader, struct Variable variable) {
   size_t index = model->inputs.count;
   variable.node = scope_symbol(reader->scope, INPUT, (int)index, variable.name, variable.dimension, variable.line);
   variable.line = scope_line(reader->scope, variable.line);
-  model->given.input_rates = make_room(model->given.input_rates, index, sizeof *model->given.input_rates);
-  model->given.input_rates[index] = ZERO;
+  model->prescribed.input_rates =
+      make_room(model->prescribed.input_rates, index, sizeof *model->prescribed.input_rates);
+  model->prescribed.input_rates[index] = ZERO;
   append_variable(&model->inputs, variable);
   return variable.node;
 }

@@ -28,11 +28,11 @@
 #include "read/space/springs.h"
 
 /* Reads the value of a constant: override, list item or attribute. Returns false for none or after an error. */
-static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Given *given, char *listed,
+static bool read_constant_value(struct Reader *reader, xmlNodePtr node, const struct Override *overrides, char *listed,
                                 struct Quantity *value) {
-  const struct Given *giver = giver_of(given, "value");
-  struct Source *present = enter_giver(reader, giver, &node);
-  char *text = listed != NULL && giver == NULL ? listed : attribute(node, "value");
+  const struct Override *override = override_of_attribute(overrides, "value");
+  struct Source *present = enter_override(reader, override, &node);
+  char *text = listed != NULL && override == NULL ? listed : attribute(node, "value");
   bool right =
       text != NULL && *text != '\0' && parse_constant(reader->scope, text, location_of(node, "value", 0), value);
   source_enter(reader, present);
@@ -55,8 +55,8 @@ static bool read_defined(struct Reader *reader, xmlNodePtr node, const char *nam
 /* Defines a constant. listed: its value in a list; NULL if it has an attribute. */
 static void define_constant(struct Reader *reader, xmlNodePtr node, char *name, char *listed) {
   struct Quantity value = {.node = ZERO, .dimension = dimension_one, .literal = true};
-  const struct Given *given = given_for(reader, node, name);
-  bool right = read_constant_value(reader, node, given, listed, &value);
+  const struct Override *overrides = overrides_of(reader, node, name);
+  bool right = read_constant_value(reader, node, overrides, listed, &value);
   for (size_t i = 0; right && i < reader->options->definition_count; i++) {
     const char *definition = reader->options->definitions[i];
     size_t length = strlen(name);
@@ -132,7 +132,7 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   velocity.dimension = dimension_multiply(position.dimension, unit_of("s"), -1.0);
   velocity.display_unit = display_unit_attribute(reader, node, "velocityDisplayUnit", velocity.dimension);
   if (velocity.name == NULL) velocity.name = copy_text("?");
-  given_for(reader, node, position.name); /* marks overrides as used; start_expressions.c reads them */
+  overrides_of(reader, node, position.name); /* marks overrides as used; start_expressions.c reads them */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
   position.start = plain_number(node, "start"); /* preliminary, see start_expressions.h */
   velocity.start = plain_number(node, "velocityStart");
@@ -147,11 +147,10 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   reader->present->number = (size_t)index;
   append_variable(&model->coordinates, position);
   append_variable(&model->velocities, velocity);
-  model->given.prescribed_motions =
-      make_room(model->given.prescribed_motions, (size_t)index, sizeof *model->given.prescribed_motions);
-  model->given.prescribed_motions[index] = (struct PrescribedMotion){.given = has_attribute(node, "acceleration")};
-  model->given.prescribed_motion_count += model->given.prescribed_motions[index].given;
-  model->forces.any |= model->given.prescribed_motions[index].given;
+  model->prescribed.motions = make_room(model->prescribed.motions, (size_t)index, sizeof *model->prescribed.motions);
+  model->prescribed.motions[index] = (struct PrescribedMotion){.is_prescribed = has_attribute(node, "acceleration")};
+  model->prescribed.motion_count += model->prescribed.motions[index].is_prescribed;
+  model->forces.any |= model->prescribed.motions[index].is_prescribed;
 }
 
 /* A displacement has a rate, which is zero too: it lets velocities contribute to the force along the displacement. */
@@ -173,7 +172,7 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
                         const char *what, unsigned kinds, const char *unit) {
   struct Quantity term = expression_text_of(reader, node, what, kinds);
   require_unit(reader, line_of(node), what, term, unit_of(unit));
-  reader->model->given.inputs_move |=
+  reader->model->prescribed.inputs_move |=
       (kinds & WITH_RATES) != 0 && graph_depends_on(reader->model->graph, term.node, INPUT);
   return add_energy(reader, node, what, term.node, displaced, sum);
 }
@@ -200,7 +199,7 @@ static void read_prescribed_motion(struct Reader *reader, xmlNodePtr node) {
   if (velocity->dimension.known)
     require_unit(reader, line_of_attribute(node, "acceleration"), "the acceleration", acceleration,
                  dimension_multiply(velocity->dimension, unit_of("s"), -1.0));
-  model->given.prescribed_motions[symbol->index].acceleration = acceleration.node;
+  model->prescribed.motions[symbol->index].acceleration = acceleration.node;
 }
 
 static void read_output(struct Reader *reader, xmlNodePtr node) {
@@ -260,21 +259,21 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
   size_t index = model->inputs.count - 1;
   for (int k = 0; k < 2 && derivatives >= k + 1; k++, index++) {
     Node rate = append_input_rate(reader); /* may move the list */
-    model->given.input_rates[index] = rate;
+    model->prescribed.input_rates[index] = rate;
   }
 }
 
 static void read_input(struct Reader *reader, xmlNodePtr node) {
   struct Variable variable = common_attributes(reader, node);
-  const struct Given *given = given_for(reader, node, variable.name);
-  if (giver_of_value(given) != NULL) { /* read as a definition */
-    check_calculated(reader, given, node);
+  const struct Override *overrides = overrides_of(reader, node, variable.name);
+  if (override_of_value(overrides) != NULL) { /* read as a definition */
+    check_calculated(reader, overrides, node);
     return;
   }
   variable.start = 0.0;
-  given_number_attribute(reader, node, given, "start", &variable.start);
-  given_number_attribute(reader, node, given, "min", &variable.minimum);
-  given_number_attribute(reader, node, given, "max", &variable.maximum);
+  overridden_number_attribute(reader, node, overrides, "start", &variable.start);
+  overridden_number_attribute(reader, node, overrides, "min", &variable.minimum);
+  overridden_number_attribute(reader, node, overrides, "max", &variable.maximum);
   check_range(reader, &variable);
   append_input(reader, variable);
   read_input_rates(reader, node);
@@ -290,8 +289,8 @@ static void collect_rate(struct Reader *reader, xmlNodePtr node) {
 static void read_state(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable state = common_attributes(reader, node);
-  given_for(reader, node, state.name); /* marks overrides as used; start_expressions.c reads them */
-  state.start = 0.0;                   /* preliminary, see start_expressions.h */
+  overrides_of(reader, node, state.name); /* marks overrides as used; start_expressions.c reads them */
+  state.start = 0.0;                      /* preliminary, see start_expressions.h */
   state.nominal = nominal_attribute(reader, node, "nominal");
   number_attribute(reader, node, "min", &state.minimum);
   number_attribute(reader, node, "max", &state.maximum);

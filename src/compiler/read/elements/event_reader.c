@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "read/elements/switching_reader.h"
 #include "read/expressions/comparisons.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 
 /* Kinds of symbols in conditions and assignments of events. */
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };
@@ -51,7 +51,7 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
 static void check_target(struct Reader *reader, xmlNodePtr node, const struct Event *event, Node symbol) {
   const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
   bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
-  if (is_state && reader->model->given.prescribed_motions[target->index].given)
+  if (is_state && reader->model->prescribed.motions[target->index].is_prescribed)
     report_at(reader, node, "<set> of '%s', which is driven; expected a coordinate without an acceleration",
               target->name);
   for (size_t i = 0; i < event->assignment_count; i++)
@@ -110,9 +110,9 @@ static bool is_boolean_parameter(const struct Reader *reader, Node node) {
 static Node condition_of_modes(struct Reader *reader, Node value, long line) {
   struct Graph *graph = reader->model->graph;
   if (!graph_depends_on(graph, value, PARAMETER)) return value;
-  if (!graph_depends_on(graph, value, MODE)) return tuned_condition(reader->scope, value, line);
+  if (!graph_depends_on(graph, value, MODE)) return condition_of_parameters(reader->scope, value, line);
   Node holds = function(graph, GUARD, value, ONE), half = graph_constant(graph, 0.5);
-  return tuned_condition(reader->scope, subtract(graph, holds, half), line);
+  return condition_of_parameters(reader->scope, subtract(graph, holds, half), line);
 }
 
 /* Reads a condition, whose change to true is the event, or an expression with the direction of its zero crossing. */
@@ -174,10 +174,10 @@ static const char *words_for(const struct Event *event) {
  */
 static void check_forces(const struct Reader *reader, struct Event *event, long line) {
   const struct Model *model = reader->model;
-  unsigned kinds = kinds_that_decide(reader->scope, event->condition);
+  unsigned kinds = deciding_kinds(reader->scope, event->condition);
   event->is_of_contacts = (kinds & (KIND(ACCELERATION) | CONTACT_STATE)) != 0;
   for (size_t i = 0; i < event->assignment_count; i++)
-    kinds |= kinds_that_decide(reader->scope, event->assignments[i].value);
+    kinds |= deciding_kinds(reader->scope, event->assignments[i].value);
   if ((kinds & KIND(ACCELERATION)) == 0) return;
   collect_event(reader, event);
   for (size_t i = 0; i < model->coordinates.count; i++)
@@ -253,7 +253,7 @@ void read_sample(struct Reader *reader, xmlNodePtr node) {
   sample->period = new_mode(reader, "sample", "period");
   Node next = add(graph, sample->base, multiply(graph, sample->count, sample->period));
   Node left = subtract(graph, next, scope_find(reader->scope, "time")->node);
-  sample->branch = tuned_condition(reader->scope, left, line_of(node));
+  sample->branch = condition_of_parameters(reader->scope, left, line_of(node));
   event.condition = subtract(graph, ONE, function(graph, GUARD, sample->branch, ONE));
   read_assignments(reader, node, &event);
   count_on(graph, &event);

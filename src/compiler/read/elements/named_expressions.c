@@ -10,15 +10,16 @@
 #include "read/space/joints.h"
 #include "read/space/springs.h"
 
-bool has_value(xmlNodePtr node, const struct Given *given) {
+bool has_value(xmlNodePtr node, const struct Override *overrides) {
   if (!is_element(node, "parameter") && !is_element(node, "input")) return false;
-  return giver_of_value(given) != NULL || (giver_of(given, "start") == NULL && has_attribute(node, "value"));
+  return override_of_value(overrides) != NULL ||
+         (override_of_attribute(overrides, "start") == NULL && has_attribute(node, "value"));
 }
 
 /* Checks the value of a definition, parameter or input against the unit that it gives, and returns it in this unit. */
 static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpression *expression,
                                    struct Quantity value) {
-  xmlNodePtr node = expression->node, where = expression->given != NULL ? expression->given->node : node;
+  xmlNodePtr node = expression->node, where = expression->overrides != NULL ? expression->overrides->node : node;
   const char *what = expression->attribute == NULL   ? "the definition"
                      : is_element(node, "parameter") ? "the value of the parameter"
                                                      : "the value of the input";
@@ -70,9 +71,9 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
                                       const char *name) {
   struct Quantity value = {.node = ZERO};
   xmlNodePtr node = expression->node;
-  const struct Given *given = expression->given;
+  const struct Override *overrides = expression->overrides;
   bool is_parameter = is_element(node, "parameter"), is_input = is_element(node, "input");
-  struct Source *present = source_enter(reader, given != NULL ? given->source : expression->source);
+  struct Source *present = source_enter(reader, overrides != NULL ? overrides->source : expression->source);
   if (is_spatial(node) || (expression->attribute != NULL && *expression->attribute == '\0'))
     value = read_spatial(reader, node, name, expression->attribute);
   else if (is_element(node, "state")) value = read_rate(reader, node);
@@ -80,7 +81,7 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   else if (is_element(node, "joint")) value = read_joint_force(reader, node, name);
   else if (expression->attribute == NULL) value = read_definition(reader, node);
   else if (is_parameter || is_input)
-    expression_attribute(reader, given != NULL ? given->node : node, expression->attribute,
+    expression_attribute(reader, overrides != NULL ? overrides->node : node, expression->attribute,
                          is_parameter ? IN_MASS : IN_OUTPUT, &value);
   else value = read_component(reader, node, expression->attribute);
   if (!definitions_are_waiting(reader->definitions) && (expression->attribute == NULL || is_parameter || is_input))
@@ -134,10 +135,11 @@ void collect_value(struct Reader *reader, xmlNodePtr node) {
   bool is_definition = is_element(node, "define");
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
-  const struct Given *given = is_definition ? NULL : given_for(reader, node, name);
-  if (!is_definition && !has_value(node, given)) return;
+  const struct Override *overrides = is_definition ? NULL : overrides_of(reader, node, name);
+  if (!is_definition && !has_value(node, overrides)) return;
   if (scope_find(reader->scope, name) == NULL) {
-    struct NamedExpression expression = {node, is_definition ? NULL : "value", reader->source, giver_of_value(given)};
+    struct NamedExpression expression = {node, is_definition ? NULL : "value", reader->source,
+                                         override_of_value(overrides)};
     definitions_add(reader->definitions, name, &expression);
     return;
   }

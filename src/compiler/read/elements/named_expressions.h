@@ -8,7 +8,7 @@
 #include "read/names/definitions.h"
 
 /* True if a <parameter> or <input> has a value, its own or an override, instead of a start value. */
-bool has_value(xmlNodePtr node, const struct Given *given);
+bool has_value(xmlNodePtr node, const struct Override *overrides);
 
 /* Collects the expression of a <define>, or of a <parameter> or <input> with a value. */
 void collect_value(struct Reader *reader, xmlNodePtr node);

@@ -34,14 +34,14 @@ static void check_value_alone(struct Reader *reader, xmlNodePtr node) {
  * An override with a value replaces start, min and max of the file and of inner <include>s. Beside the value and in
  * outer <include>s they are errors.
  */
-void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node) {
-  const struct Given *giver = giver_of_value(given), *inner = giver != NULL ? giver->inner : NULL;
-  for (; given != inner; given = given->inner) {
-    struct Source *present = source_enter(reader, given->source);
-    check_value_alone(reader, given->node);
+void check_calculated(struct Reader *reader, const struct Override *overrides, xmlNodePtr node) {
+  const struct Override *override = override_of_value(overrides), *inner = override != NULL ? override->inner : NULL;
+  for (; overrides != inner; overrides = overrides->inner) {
+    struct Source *present = source_enter(reader, overrides->source);
+    check_value_alone(reader, overrides->node);
     source_enter(reader, present);
   }
-  if (giver == NULL) check_value_alone(reader, node);
+  if (override == NULL) check_value_alone(reader, node);
 }
 
 static bool is_whole(double number) {
@@ -81,8 +81,9 @@ static void read_value(struct Reader *reader, xmlNodePtr node, const char *name,
 }
 
 /* Reads the start value from an override or from the element's attribute. */
-static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, struct Variable *variable) {
-  struct Source *present = enter_giver(reader, giver_of(given, "start"), &node);
+static void read_start(struct Reader *reader, xmlNodePtr node, const struct Override *overrides,
+                       struct Variable *variable) {
+  struct Source *present = enter_override(reader, override_of_attribute(overrides, "start"), &node);
   char *text = attribute(node, "start");
   if (text != NULL) read_value(reader, node, "start", text, variable);
   source_enter(reader, present);
@@ -96,10 +97,11 @@ static struct Variable variable_of(struct Reader *reader, xmlNodePtr node) {
 }
 
 /* Declares a parameter whose start value has been read. The range may be overridden. */
-static void declare(struct Reader *reader, xmlNodePtr node, const struct Given *given, struct Variable variable) {
+static void declare(struct Reader *reader, xmlNodePtr node, const struct Override *overrides,
+                    struct Variable variable) {
   struct VariableList *list = &reader->model->parameters;
-  given_number_attribute(reader, node, given, "min", &variable.minimum);
-  given_number_attribute(reader, node, given, "max", &variable.maximum);
+  overridden_number_attribute(reader, node, overrides, "min", &variable.minimum);
+  overridden_number_attribute(reader, node, overrides, "max", &variable.maximum);
   check_range(reader, &variable);
   check_type(reader, &variable);
   variable.node =
@@ -112,15 +114,15 @@ static void declare(struct Reader *reader, xmlNodePtr node, const struct Given *
 static void read_listed(struct Reader *reader, xmlNodePtr node, char *name, const char *text) {
   struct Variable variable = variable_of(reader, node);
   variable.name = name;
-  const struct Given *given = given_for(reader, node, name);
-  if (giver_of_value(given) != NULL)
+  const struct Override *overrides = overrides_of(reader, node, name);
+  if (override_of_value(overrides) != NULL)
     report_at(reader, node,
               "'%s' is one of a list of values, to which an <include> can give a start; expected start in place of "
               "value",
               name);
   read_value(reader, node, "values", text, &variable);
-  read_start(reader, node, given, &variable);
-  declare(reader, node, given, variable);
+  read_start(reader, node, overrides, &variable);
+  declare(reader, node, overrides, variable);
 }
 
 void check_name_of_list(struct Reader *reader, xmlNodePtr node, const char *name) {
@@ -149,15 +151,15 @@ void read_parameter(struct Reader *reader, xmlNodePtr node) {
     return;
   }
   struct Variable variable = variable_of(reader, node);
-  const struct Given *given = given_for(reader, node, variable.name);
-  if (has_value(node, given)) {
-    check_calculated(reader, given, node);
+  const struct Override *overrides = overrides_of(reader, node, variable.name);
+  if (has_value(node, overrides)) {
+    check_calculated(reader, overrides, node);
     return;
   }
   variable.start = 0.0;
-  read_start(reader, node, given, &variable);
-  declare(reader, node, given, variable);
-  if (!has_attribute(node, "start") && giver_of(given, "start") == NULL)
+  read_start(reader, node, overrides, &variable);
+  declare(reader, node, overrides, variable);
+  if (!has_attribute(node, "start") && override_of_attribute(overrides, "start") == NULL)
     report_at(reader, node,
               "<parameter> needs the attribute 'start'; expected start=\"...\", value=\"...\" for one that "
               "follows from others, or values=\"...\" for name[1], name[2], ...");

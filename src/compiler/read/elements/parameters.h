@@ -10,4 +10,4 @@ void check_name_of_list(struct Reader *reader, xmlNodePtr node, const char *name
 void read_parameter(struct Reader *reader, xmlNodePtr node);
 
 /* Reports attributes that cannot be combined with a value, in the element or an override. */
-void check_calculated(struct Reader *reader, const struct Given *given, xmlNodePtr node);
+void check_calculated(struct Reader *reader, const struct Override *overrides, xmlNodePtr node);

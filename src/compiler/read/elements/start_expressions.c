@@ -5,10 +5,10 @@
 #include "read/context/includes.h"
 #include "read/context/variables.h"
 
-static void read_start(struct Reader *reader, xmlNodePtr node, const struct Given *given, const char *attribute,
+static void read_start(struct Reader *reader, xmlNodePtr node, const struct Override *overrides, const char *attribute,
                        struct Variable *variable) {
   struct Quantity value = {.node = ZERO, .literal = true};
-  struct Source *present = enter_giver(reader, giver_of(given, attribute), &node);
+  struct Source *present = enter_override(reader, override_of_attribute(overrides, attribute), &node);
   expression_attribute(reader, node, attribute, IN_MASS, &value);
   require_unit(reader, line_of_attribute(node, attribute), "the start value", value, variable->dimension);
   variable->start_expression = value.node;
@@ -18,14 +18,14 @@ static void read_start(struct Reader *reader, xmlNodePtr node, const struct Give
 void read_start_expressions(struct Reader *reader, xmlNodePtr node) {
   size_t index = reader->present->number;
   struct Variable *coordinate = &reader->model->coordinates.items[index];
-  const struct Given *given = given_for(reader, node, coordinate->name);
-  read_start(reader, node, given, "start", coordinate);
-  read_start(reader, node, given, "velocityStart", &reader->model->velocities.items[index]);
+  const struct Override *overrides = overrides_of(reader, node, coordinate->name);
+  read_start(reader, node, overrides, "start", coordinate);
+  read_start(reader, node, overrides, "velocityStart", &reader->model->velocities.items[index]);
 }
 
 void read_start_of_state(struct Reader *reader, xmlNodePtr node) {
   struct Variable *state = &reader->model->states.items[reader->present->number];
-  read_start(reader, node, given_for(reader, node, state->name), "start", state);
+  read_start(reader, node, overrides_of(reader, node, state->name), "start", state);
 }
 
 static void evaluate_start(struct Reader *reader, struct Variable *variable, const double *values) {

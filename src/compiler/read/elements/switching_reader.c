@@ -205,14 +205,14 @@ static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, cons
 }
 
 static void read_rigid_contact(struct Reader *reader, xmlNodePtr node) {
-  const struct RigidTouch *touches = rigid_touches(reader, node);
-  size_t count = touches != NULL ? count_shape_contacts(reader, node) : 0;
+  const struct RigidContact *contacts = rigid_contacts(reader, node);
+  size_t count = contacts != NULL ? count_shape_contacts(reader, node) : 0;
   struct FrictionCoefficients grip = read_grip(reader, node);
   for (size_t i = 0; i < count; i++) {
     size_t number = reader->present->number + i;
-    set_contact(reader, node, number, touches[i].gap);
+    set_contact(reader, node, number, contacts[i].gap);
     if (!has_shape_friction(node)) continue;
-    set_friction_of_contact(reader, node, &reader->model->switches.contacts[number], &grip, &touches[i].slip);
+    set_friction_of_contact(reader, node, &reader->model->switches.contacts[number], &grip, &contacts[i].slip);
   }
 }
 

@@ -9,7 +9,7 @@
 #include "read/expressions/integration.h"
 #include "read/expressions/parser.h"
 #include "read/expressions/quantities.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 
 static const struct Quantity nothing = {.node = ZERO};
 static const char integral_form[] = "integral(name, from, to, expression)";
@@ -94,7 +94,7 @@ static struct Quantity derivative_by_local(struct Parser *parser, const struct L
   Node symbol = scope->dummies[--scope->dummy_count].symbol;
   if (parser->failed) return nothing;
   Node derivative = substitute_symbol(parser->graph, derivative_by(parser->graph, value.node, symbol), symbol, at);
-  return (struct Quantity){.node = with_pieces(scope, derivative, current_line(parser)),
+  return (struct Quantity){.node = with_modes(scope, derivative, current_line(parser)),
                            .dimension = dimension_multiply(value.dimension, dimension, -1.0)};
 }
 
@@ -137,7 +137,7 @@ static Node derivative_with_constant_arguments(struct Parser *parser, Node varia
     const struct DummyVariable *dummy = &scope->dummies[--scope->dummy_count];
     derivative = substitute_symbol(graph, derivative, dummy->symbol, dummy->low);
   }
-  return has_copies ? with_pieces(scope, derivative, current_line(parser)) : derivative;
+  return has_copies ? with_modes(scope, derivative, current_line(parser)) : derivative;
 }
 
 /* Returns the words for a name that no derivative can be taken by. */

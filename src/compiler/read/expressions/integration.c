@@ -19,7 +19,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/expressions/integration_error.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 
 /* Largest number of nodes that lagc chooses, the same for limits that move, and the number of sample states. */
 enum { CHOICE_LIMIT = 32, MOVING_CHOICE_LIMIT = 128, SAMPLES = 6 };
@@ -238,7 +238,7 @@ static struct QuadratureChoice choose_nodes(struct Parser *parser, const struct 
 }
 
 /* Returns a node that is 1 where another one is positive, else 0. */
-static Node one_above_zero(struct Graph *graph, Node node) {
+static Node step_function(struct Graph *graph, Node node) {
   return function(graph, GUARD, function(graph, SIGN, node, ZERO), ONE);
 }
 
@@ -250,11 +250,11 @@ static Node within_ranges(struct Graph *graph, const struct QuadratureChoice *ch
     Node symbol = graph->symbols[range->symbol].node;
     if (!isinf(range->high)) {
       Node high = graph_constant(graph, range->high);
-      inside = multiply(graph, inside, one_above_zero(graph, subtract(graph, high, symbol)));
+      inside = multiply(graph, inside, step_function(graph, subtract(graph, high, symbol)));
     }
     if (!isinf(range->low)) {
       Node low = graph_constant(graph, range->low);
-      inside = multiply(graph, inside, one_above_zero(graph, subtract(graph, symbol, low)));
+      inside = multiply(graph, inside, step_function(graph, subtract(graph, symbol, low)));
     }
   }
   return divide(graph, sum, inside);
@@ -267,7 +267,7 @@ static Node sum_over(struct Parser *parser, const struct Rule *rule, Node value)
   Node length = subtract(graph, dummy.high, dummy.low), sum = ZERO;
   for (size_t k = 0; k < rule->count && graph_limit(graph) == NULL; k++) {
     Node point = add(graph, dummy.low, scale(graph, rule->nodes[k], length));
-    Node term = with_pieces(parser->scope, substitute_symbol(graph, value, dummy.symbol, point), current_line(parser));
+    Node term = with_modes(parser->scope, substitute_symbol(graph, value, dummy.symbol, point), current_line(parser));
     sum = add(graph, sum, scale(graph, rule->weights[k], term));
   }
   return multiply(graph, length, sum);

@@ -15,7 +15,7 @@
 #include "read/expressions/quantities.h"
 #include "read/expressions/unknown_names.h"
 #include "read/expressions/vectors.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 #include "read/names/hints.h"
 #include "read/names/words.h"
 #include "read/tables/table.h"
@@ -170,7 +170,7 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
 }
 
 /* Returns the form of a definition that <set> reads: piecewise functions for which no event waits are plain values. */
-static struct Quantity as_read_there(const struct Parser *parser, struct Quantity quantity) {
+static struct Quantity evaluated_at_event(const struct Parser *parser, struct Quantity quantity) {
   if ((parser->location.kinds & AT_INSTANT) == 0 || quantity.whole == ZERO) return quantity;
   quantity.node = parser->scope->keeps_whole ? quantity.whole : quantity.at_instant;
   return quantity;
@@ -184,7 +184,7 @@ struct Quantity look_up(struct Parser *parser, const char *name) {
     return nothing;
   }
   if (scope_is_reserved(parser->scope, quantity)) report_reserved(parser, name);
-  unsigned surplus = kinds_that_decide(parser->scope, quantity->node) & ~(parser->location.kinds | 1u << DUMMY);
+  unsigned surplus = deciding_kinds(parser->scope, quantity->node) & ~(parser->location.kinds | 1u << DUMMY);
   for (int kind = 0; kind < SYMBOL_KIND_COUNT; kind++)
     if ((surplus >> kind & 1u) != 0)
       FAIL(parser, "%s cannot depend on %s, but '%s' does%s", parser->location.what, kind_names[kind], name,
@@ -197,7 +197,7 @@ struct Quantity look_up(struct Parser *parser, const char *name) {
         "or an <output>, such as an <event> that sets a <mode>",
         parser->location.what, name);
   require_input_derivatives(parser, quantity->node, name);
-  return as_read_there(parser, *quantity);
+  return evaluated_at_event(parser, *quantity);
 }
 
 /* True if both bounds are literals. Others may be reversed on purpose: sum(j, 2, i-1, ...) is empty for i = 1. */
@@ -528,7 +528,7 @@ static bool is_truth(const struct Scope *scope, const char *text, Node node) {
   if (!graph_is_constant_in_time(scope->graph, node)) return false;
   bool is_choice = strncmp(text + strspn(text, " \t\r\n"), "if", 2) == 0 && graph_depends_on(scope->graph, node, MODE);
   bool is_mode = scope->graph->vertices[node].operation == SYMBOL && graph_depends_on(scope->graph, node, MODE);
-  return is_choice || is_mode || (kinds_that_decide(scope, node) & CONTACT_STATE) != 0;
+  return is_choice || is_mode || (deciding_kinds(scope, node) & CONTACT_STATE) != 0;
 }
 
 bool parse_when(struct Scope *scope, const char *text, struct Location location, Node *value) {

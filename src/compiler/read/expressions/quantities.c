@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "model/model.h"
 #include "read/expressions/number_units.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 
 static double value_at_start(const struct Scope *scope, Node node) {
   const struct Graph *graph = scope->graph;
@@ -37,8 +37,8 @@ static void require_dimensionless(struct Parser *parser, struct Quantity value, 
  * Reports operands whose units disagree, by a warning if a numeric factor can explain it. Returns the unit to continue
  * with: that of a, or of b if the factor is in a.
  */
-static struct Dimension mended_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
-                                         const char *where) {
+static struct Dimension corrected_dimension(struct Parser *parser, struct Quantity a, struct Quantity b,
+                                            const char *where) {
   char *problem = format_text("%s: unit mismatch: %s and %s in one %s; expected the same unit", parser->location.what,
                               unit_text(a.dimension), unit_text(b.dimension), where);
   long line = current_line(parser);
@@ -54,7 +54,7 @@ static struct Dimension common_dimension(struct Parser *parser, struct Quantity 
                                          const char *where) {
   if (a.literal) return b.dimension;
   if (b.literal) return a.dimension;
-  if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) return mended_dimension(parser, a, b, where);
+  if (!scope_units_agree(parser->scope, a.dimension, b.dimension)) return corrected_dimension(parser, a, b, where);
   return a.dimension.known ? a.dimension : b.dimension;
 }
 
@@ -151,7 +151,7 @@ struct Quantity quantity_function(struct Parser *parser, enum Operation operatio
                                   struct Quantity b) {
   bool has_two = operation_arity(operation) == 2;
   Node node = functions[operation].has_pieces
-                  ? pieces_of(parser->scope, operation, a.node, b.node, current_line(parser))
+                  ? piecewise_function(parser->scope, operation, a.node, b.node, current_line(parser))
                   : function(parser->graph, operation, a.node, b.node);
   struct Quantity result = {.node = node, .dimension = dimension_one, .literal = a.literal && (!has_two || b.literal)};
   check_function(parser, operation, a.node);

@@ -106,7 +106,7 @@ static char *function_names(void) {
 }
 
 /* Considers the names of the current file, without its prefix. */
-static void consider_own(struct SimilarName *similar, const struct Names *names, const char *prefix) {
+static void consider_names_of_file(struct SimilarName *similar, const struct Names *names, const char *prefix) {
   size_t length = strlen(prefix);
   for (size_t i = 0; i < names->capacity; i++) {
     const char *name = names->slots[i].text;
@@ -120,8 +120,8 @@ void report_unknown_function(struct Parser *parser, const char *name) {
   for (size_t i = 0; free_functions[i] != NULL; i++) similar_consider(&similar, free_functions[i]);
   for (int operation = 0; operation < OPERATION_COUNT; operation++)
     if (!functions[operation].is_internal) similar_consider(&similar, functions[operation].name);
-  consider_own(&similar, parser->scope->tables, parser->scope->prefix);
-  consider_own(&similar, parser->scope->functions, parser->scope->prefix);
+  consider_names_of_file(&similar, parser->scope->tables, parser->scope->prefix);
+  consider_names_of_file(&similar, parser->scope->functions, parser->scope->prefix);
   char *names = function_names(), *indexed = format_text("%s[1]", name);
   bool joins_conditions = strcmp(name, "and") == 0 || strcmp(name, "or") == 0;
   if (similar.best != NULL && *hint_for_function(name) == '\0')

@@ -12,14 +12,14 @@
 static const char expected[] = "the name of a <particle>, <body>, <point> or <frame>, or base";
 
 /* A vector along the base's axes, with the unit of its components. */
-struct Arrow {
+struct VectorQuantity {
   struct Vector vector;
   struct Dimension dimension;
 };
 
-static const struct Arrow no_arrow = {.vector = {{ZERO, ZERO, ZERO}}};
+static const struct VectorQuantity no_arrow = {.vector = {{ZERO, ZERO, ZERO}}};
 
-static struct Arrow parse_vector(struct Parser *parser);
+static struct VectorQuantity parse_vector(struct Parser *parser);
 
 bool is_function_of_vectors(const char *name) {
   static const char *const names[] = {"cross", "distance", "dot", "norm"};
@@ -55,41 +55,41 @@ static bool find_axis(struct Parser *parser, const char *frame, int axis, struct
 }
 
 /* Sets the vector that NAME.axisX, NAME.v or NAME.omega stands for. Returns false for other names. */
-static bool find_part(struct Parser *parser, const char *name, struct Arrow *arrow) {
+static bool find_part(struct Parser *parser, const char *name, struct VectorQuantity *vector_value) {
   const char *part = strrchr(name, '.');
   if (part == NULL) return false;
   char *of = format_text("%.*s", (int)(part - name), name);
   bool is_axis = strlen(part) == strlen(".axisX") && strncmp(part, ".axis", 5) == 0 && strchr("XYZ", part[5]) != NULL;
   bool is_turning = strcmp(part, ".omega") == 0;
-  arrow->dimension = is_axis ? dimension_one : unit_of(is_turning ? "rad/s" : "m/s");
-  if (is_axis) return find_axis(parser, of, part[5] - 'X', &arrow->vector);
-  if (is_turning) return find_components(parser, of, "w", &arrow->vector);
-  return strcmp(part, ".v") == 0 && find_components(parser, of, "v", &arrow->vector);
+  vector_value->dimension = is_axis ? dimension_one : unit_of(is_turning ? "rad/s" : "m/s");
+  if (is_axis) return find_axis(parser, of, part[5] - 'X', &vector_value->vector);
+  if (is_turning) return find_components(parser, of, "w", &vector_value->vector);
+  return strcmp(part, ".v") == 0 && find_components(parser, of, "v", &vector_value->vector);
 }
 
-static struct Arrow parse_named_arrow(struct Parser *parser, const char *name) {
-  struct Arrow arrow = no_arrow;
-  arrow.dimension = unit_of("m");
-  if (strcmp(name, "base") == 0 || find_components(parser, name, "", &arrow.vector)) return arrow;
-  if (!parser->failed && !find_part(parser, name, &arrow))
+static struct VectorQuantity parse_named_vector(struct Parser *parser, const char *name) {
+  struct VectorQuantity vector_value = no_arrow;
+  vector_value.dimension = unit_of("m");
+  if (strcmp(name, "base") == 0 || find_components(parser, name, "", &vector_value.vector)) return vector_value;
+  if (!parser->failed && !find_part(parser, name, &vector_value))
     FAIL(parser, "%s: there is no point '%s'; expected %s", parser->location.what, name, expected);
-  return arrow;
+  return vector_value;
 }
 
-static struct Arrow cross_product(struct Parser *parser) {
-  struct Arrow first = parse_vector(parser);
+static struct VectorQuantity cross_product(struct Parser *parser) {
+  struct VectorQuantity first = parse_vector(parser);
   expect_character(parser, ',', "between the two vectors of cross");
-  struct Arrow second = parse_vector(parser);
+  struct VectorQuantity second = parse_vector(parser);
   expect_character(parser, ')', "after the two vectors of cross");
   if (parser->failed) return no_arrow;
-  return (struct Arrow){vector_cross(parser->graph, first.vector, second.vector),
-                        dimension_multiply(first.dimension, second.dimension, 1.0)};
+  return (struct VectorQuantity){vector_cross(parser->graph, first.vector, second.vector),
+                                 dimension_multiply(first.dimension, second.dimension, 1.0)};
 }
 
-static struct Arrow parse_arrow(struct Parser *parser) {
+static struct VectorQuantity parse_vector_value(struct Parser *parser) {
   char buffer[32];
   if (accept_character(parser, '(')) {
-    struct Arrow inner = parse_vector(parser);
+    struct VectorQuantity inner = parse_vector(parser);
     expect_character(parser, ')', "to close a parenthesis");
     return inner;
   }
@@ -102,7 +102,7 @@ static struct Arrow parse_arrow(struct Parser *parser) {
   const char *end = parser->next;
   if (strcmp(name, "cross") == 0 && accept_character(parser, '(')) return cross_product(parser);
   parser->next = end;
-  return parser->failed ? no_arrow : parse_named_arrow(parser, name);
+  return parser->failed ? no_arrow : parse_named_vector(parser, name);
 }
 
 /* True if a scalar comes next: a literal, a call other than cross, or a name with a scalar value. */
@@ -120,15 +120,16 @@ static bool is_number_ahead(struct Parser *parser) {
   return find_quantity(parser, name) != NULL || definitions_contain(parser->scope->definitions, full_name);
 }
 
-static struct Arrow scaled_by(struct Parser *parser, struct Arrow arrow, struct Quantity factor, bool is_product) {
+static struct VectorQuantity scaled_by(struct Parser *parser, struct VectorQuantity vector_value,
+                                       struct Quantity factor, bool is_product) {
   struct Quantity scaled = {.node = ZERO};
   for (int i = 0; i < 3 && !parser->failed; i++) {
-    struct Quantity component = {.node = arrow.vector.along[i], .dimension = arrow.dimension};
+    struct Quantity component = {.node = vector_value.vector.along[i], .dimension = vector_value.dimension};
     scaled = (is_product ? quantity_multiply : quantity_divide)(parser, component, factor);
-    arrow.vector.along[i] = scaled.node;
+    vector_value.vector.along[i] = scaled.node;
   }
-  arrow.dimension = scaled.dimension;
-  return arrow;
+  vector_value.dimension = scaled.dimension;
+  return vector_value;
 }
 
 /* Parses the scalar factors in front of a vector and returns their product. */
@@ -148,22 +149,23 @@ static struct Quantity parse_factors(struct Parser *parser) {
   return product;
 }
 
-static struct Arrow parse_scaled(struct Parser *parser) {
+static struct VectorQuantity parse_scaled(struct Parser *parser) {
   bool is_scaled = is_number_ahead(parser);
   struct Quantity before = {.node = ONE};
   if (is_scaled) before = parse_factors(parser);
-  struct Arrow arrow = parse_arrow(parser);
-  if (is_scaled && !parser->failed) arrow = scaled_by(parser, arrow, before, true);
+  struct VectorQuantity vector_value = parse_vector_value(parser);
+  if (is_scaled && !parser->failed) vector_value = scaled_by(parser, vector_value, before, true);
   while (!parser->failed) {
     bool is_product = accept_character(parser, '*');
     if (!is_product && !accept_character(parser, '/')) break;
     struct Quantity factor = parse_power(parser);
-    if (!parser->failed) arrow = scaled_by(parser, arrow, factor, is_product);
+    if (!parser->failed) vector_value = scaled_by(parser, vector_value, factor, is_product);
   }
-  return arrow;
+  return vector_value;
 }
 
-static struct Arrow sum_of_arrows(struct Parser *parser, struct Arrow a, struct Arrow b, bool is_plus) {
+static struct VectorQuantity sum_of_vectors(struct Parser *parser, struct VectorQuantity a, struct VectorQuantity b,
+                                            bool is_plus) {
   for (int i = 0; i < 3 && !parser->failed; i++) {
     struct Quantity first = {.node = a.vector.along[i], .dimension = a.dimension};
     struct Quantity second = {.node = b.vector.along[i], .dimension = b.dimension};
@@ -174,36 +176,36 @@ static struct Arrow sum_of_arrows(struct Parser *parser, struct Arrow a, struct 
 }
 
 /* Parses a sum of vectors. Parentheses count toward the same nesting limit as those of scalars. */
-static struct Arrow parse_vector(struct Parser *parser) {
+static struct VectorQuantity parse_vector(struct Parser *parser) {
   enum { NESTING_LIMIT = 1000 }; /* as in parser.c */
   if (++parser->nesting > NESTING_LIMIT)
     FAIL(parser, "%s: more than %d nested parentheses; expected fewer", parser->location.what, NESTING_LIMIT);
   if (parser->failed) return no_arrow;
   bool is_negative = accept_character(parser, '-');
-  struct Arrow sum = parse_scaled(parser);
+  struct VectorQuantity sum = parse_scaled(parser);
   if (is_negative) sum.vector = vector_scale(parser->graph, graph_constant(parser->graph, -1.0), sum.vector);
   while (!parser->failed) {
     bool is_plus = accept_character(parser, '+');
     if (!is_plus && !accept_character(parser, '-')) break;
-    struct Arrow term = parse_scaled(parser);
-    if (!parser->failed) sum = sum_of_arrows(parser, sum, term, is_plus);
+    struct VectorQuantity term = parse_scaled(parser);
+    if (!parser->failed) sum = sum_of_vectors(parser, sum, term, is_plus);
   }
   parser->nesting--;
   return sum;
 }
 
-static struct Quantity norm_of(struct Graph *graph, struct Arrow arrow) {
-  Node square = vector_dot(graph, arrow.vector, arrow.vector);
-  return (struct Quantity){.node = power_number(graph, square, 0.5), .dimension = arrow.dimension};
+static struct Quantity norm_of(struct Graph *graph, struct VectorQuantity vector_value) {
+  Node square = vector_dot(graph, vector_value.vector, vector_value.vector);
+  return (struct Quantity){.node = power_number(graph, square, 0.5), .dimension = vector_value.dimension};
 }
 
-static struct Quantity distance_of(struct Parser *parser, struct Arrow first, struct Arrow second) {
+static struct Quantity distance_of(struct Parser *parser, struct VectorQuantity first, struct VectorQuantity second) {
   struct Graph *graph = parser->graph;
   bool are_points = dimension_agrees(first.dimension, unit_of("m")) && dimension_agrees(second.dimension, unit_of("m"));
   if (!are_points)
     FAIL(parser, "%s: distance(...) is between two points; expected %s", parser->location.what, expected);
   struct Vector back = vector_scale(graph, graph_constant(graph, -1.0), first.vector);
-  return norm_of(graph, (struct Arrow){vector_add(graph, second.vector, back), unit_of("m")});
+  return norm_of(graph, (struct VectorQuantity){vector_add(graph, second.vector, back), unit_of("m")});
 }
 
 struct Quantity parse_function_of_vectors(struct Parser *parser, const char *name) {
@@ -212,7 +214,7 @@ struct Quantity parse_function_of_vectors(struct Parser *parser, const char *nam
   const char *of = strcmp(name, "distance") == 0 ? "points" : "vectors";
   if (strcmp(name, "cross") == 0)
     FAIL(parser, "%s: cross(...) is a vector; expected it in dot(...) or norm(...)", parser->location.what);
-  struct Arrow first = parse_vector(parser), second = no_arrow;
+  struct VectorQuantity first = parse_vector(parser), second = no_arrow;
   if (!is_norm) {
     expect_character(parser, ',', format_text("between the two %s of %s", of, name));
     second = parse_vector(parser);

@@ -35,8 +35,8 @@ static const double tolerance = 1e-5 * STEPS, tie = 2.0; /* in steps */
 /* A point on the grid. */
 struct Site {
   int64_t at[3];
-  size_t point;     /* index into the mesh's points */
-  bool is_needless; /* not needed as a corner */
+  size_t point;      /* index into the mesh's points */
+  bool is_redundant; /* not needed as a corner */
 };
 
 /* A triangle whose corners run anticlockwise seen from outside. */
@@ -209,7 +209,7 @@ static bool grow_hull(struct Hull *hull, const struct Site *sites, size_t count,
 }
 
 /* True if the corner is within the tolerance of the hull of the others, as rounded points of faces are. */
-static bool is_needless(const struct Hull *hull, size_t corner) {
+static bool is_redundant(const struct Hull *hull, size_t corner) {
   struct Site others[MOST_CORNERS];
   size_t count = 0;
   for (size_t i = 0; i < hull->corner_count; i++)
@@ -246,11 +246,11 @@ static size_t find_sites(const struct Mesh *mesh, struct Site *sites, double *st
 }
 
 /* Removes the corners that are not needed from the hull and marks their sites. Returns their number. */
-static size_t drop_needless(struct Hull *hull, struct Site *sites) {
+static size_t drop_redundant(struct Hull *hull, struct Site *sites) {
   size_t dropped = 0, i = 0;
   while (i < hull->corner_count) {
-    if (is_needless(hull, i)) {
-      sites[hull->corners[i] - sites].is_needless = true;
+    if (is_redundant(hull, i)) {
+      sites[hull->corners[i] - sites].is_redundant = true;
       hull->corner_count--;
       for (size_t k = i; k < hull->corner_count; k++) hull->corners[k] = hull->corners[k + 1];
       dropped++;
@@ -263,7 +263,7 @@ static size_t drop_needless(struct Hull *hull, struct Site *sites) {
 static size_t drop_marked(struct Site *sites, size_t count) {
   size_t kept = 0;
   for (size_t i = 0; i < count; i++)
-    if (!sites[i].is_needless) sites[kept++] = sites[i];
+    if (!sites[i].is_redundant) sites[kept++] = sites[i];
   return kept;
 }
 
@@ -278,7 +278,7 @@ bool mesh_find_corners(struct Mesh *mesh) {
     count = drop_marked(sites, count);
     if (!grow_hull(&hull, sites, count, tolerance, &residual)) hull.corner_count = 0;
     is_full = hull.corner_count == MOST_CORNERS;
-    dropped = drop_needless(&hull, sites);
+    dropped = drop_redundant(&hull, sites);
   } while (is_full && dropped > 0);
   mesh->corner_count = hull.corner_count;
   mesh->residual = residual * step;

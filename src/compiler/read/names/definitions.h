@@ -15,14 +15,14 @@
 
 struct Scope;
 struct Source;
-struct Given;
+struct Override;
 
 /* An expression and the element that it belongs to. */
 struct NamedExpression {
   xmlNodePtr node;
-  const char *attribute;     /* contains the expression; NULL for the element's text */
-  struct Source *source;     /* of the element */
-  const struct Given *given; /* the override by an <include> that contains the expression; NULL for none */
+  const char *attribute;            /* contains the expression; NULL for the element's text */
+  struct Source *source;            /* of the element */
+  const struct Override *overrides; /* the override by an <include> that contains the expression; NULL for none */
 };
 
 /* A <for> with one value of its index. `outer` leads to the enclosing ones. */

@@ -76,8 +76,8 @@ xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char
   return coordinate;
 }
 
-void write_beyond(const struct Writer *writer, const char *name, const char *unit, const char *lower,
-                  const char *upper) {
+void write_excess_of_limits(const struct Writer *writer, const char *name, const char *unit, const char *lower,
+                            const char *upper) {
   write_output(writer, format_text("%s_beyond", name), unit,
                format_text("max(0, %s - (%s)) + min(0, %s - (%s))", name, upper, name, lower),
                format_text("%s less its limits, %s and %s, where it is beyond them", name, lower, upper));

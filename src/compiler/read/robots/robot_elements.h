@@ -39,8 +39,8 @@ xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char
                        const char *description);
 
 /* Writes the output NAME_beyond: the distance of the value NAME from its limits, 0 within them. */
-void write_beyond(const struct Writer *writer, const char *name, const char *unit, const char *lower,
-                  const char *upper);
+void write_excess_of_limits(const struct Writer *writer, const char *name, const char *unit, const char *lower,
+                            const char *upper);
 
 /* Writes the contacts NAME_min and NAME_max, which keep a position within its limits. */
 void write_end_contacts(const struct Writer *writer, const char *name, const char *unit, const char *position,

@@ -88,8 +88,8 @@ static void write_friction(const struct Writer *writer, const struct RobotJoint 
 }
 
 /* Writes the energies of a joint: kinetic energy of its motor and potential of its spring. */
-static void write_stores(const struct Writer *writer, const struct RobotJoint *joint,
-                         const struct JointMotion *motion) {
+static void write_energies_of_joint(const struct Writer *writer, const struct RobotJoint *joint,
+                                    const struct JointMotion *motion) {
   const char *name = joint->symbol;
   if (joint->armature > 0) {
     write_parameter(writer, format_text("%s_armature", name), joint->armature, joint_slides(joint) ? "kg" : "kg.m2",
@@ -107,8 +107,8 @@ static void write_stores(const struct Writer *writer, const struct RobotJoint *j
   }
 }
 
-static void write_losses(const struct Writer *writer, const struct RobotJoint *joint,
-                         const struct JointMotion *motion) {
+static void write_dissipation_of_joint(const struct Writer *writer, const struct RobotJoint *joint,
+                                       const struct JointMotion *motion) {
   const char *name = joint->symbol;
   if (joint->damping > 0) {
     write_parameter(writer, format_text("%s_damping", name), joint->damping,
@@ -138,7 +138,7 @@ static void write_limits(const struct Writer *writer, const struct RobotJoint *j
     write_stops(writer, joint, lower, upper);
     return;
   }
-  write_beyond(writer, name, joint_unit(joint), lower, upper);
+  write_excess_of_limits(writer, name, joint_unit(joint), lower, upper);
 }
 
 static void write_single(const struct Writer *writer, const struct RobotJoint *joint, const char *description) {
@@ -155,8 +155,8 @@ static void write_single(const struct Writer *writer, const struct RobotJoint *j
     set_number(coordinate, "velocityStart", joint->start.velocity[0]);
     motion = (struct JointMotion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
   } else motion = write_follower(writer, joint, description);
-  write_stores(writer, joint, &motion);
-  write_losses(writer, joint, &motion);
+  write_energies_of_joint(writer, joint, &motion);
+  write_dissipation_of_joint(writer, joint, &motion);
   write_limits(writer, joint);
 }
 
@@ -214,7 +214,7 @@ static void write_isotropic(const struct Writer *writer, const struct RobotJoint
 }
 
 /* For unit quaternions |omega|^2 = 4 |dq/dt|^2. */
-static void write_turning(const struct Writer *writer, const struct RobotJoint *joint, const char *prefix) {
+static void write_rotation_energy(const struct Writer *writer, const struct RobotJoint *joint, const char *prefix) {
   const char *name = joint->symbol;
   write_isotropic(writer, joint, prefix, 2,
                   format_text("(%s_qw_velocity^2 + %s_qx_velocity^2 + %s_qy_velocity^2 + %s_qz_velocity^2)", name, name,
@@ -228,13 +228,13 @@ static void write_free(const struct Writer *writer, const struct RobotJoint *joi
   write_free_coordinates(writer, name, start, description);
   write_isotropic(writer, joint, "", 0.5,
                   format_text("(%s_x_velocity^2 + %s_y_velocity^2 + %s_z_velocity^2)", name, name, name), false);
-  write_turning(writer, joint, "turning_");
+  write_rotation_energy(writer, joint, "turning_");
 }
 
 static void write_ball(const struct Writer *writer, const struct RobotJoint *joint, const struct JointStart *start,
                        const char *description) {
   write_components(writer, joint->symbol, 3, start, description);
-  write_turning(writer, joint, "");
+  write_rotation_energy(writer, joint, "");
 }
 
 void write_joint(const struct Writer *writer, const struct RobotJoint *joint) {

@@ -69,7 +69,7 @@ void write_tendon(const struct Writer *writer, const struct Tendon *tendon) {
   if (isnan(tendon->lower)) return;
   const char *lower = number(tendon->lower), *upper = number(tendon->upper);
   if (writer->options->has_stops) write_end_contacts(writer, name, unit, name, lower, upper);
-  else write_beyond(writer, name, unit, lower, upper);
+  else write_excess_of_limits(writer, name, unit, lower, upper);
 }
 
 /* Returns the expression of a tendon's extension beyond its start length. */

@@ -403,7 +403,7 @@ static void check_simulators(struct RobotFile *urdf, xmlNodePtr node) {
     if (!is_element(node, of_simulators[i].name) || !condition_holds(urdf->options, of_simulators[i].condition))
       continue;
     const xmlChar *text = node->children != NULL ? node->children->content : NULL;
-    if (text == NULL || !says_nothing((const char *)text))
+    if (text == NULL || !requests_nothing((const char *)text))
       warn_unread(urdf, line_of(node), format_text("<%s>", (const char *)node->name), of_simulators[i].remedy);
   }
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)

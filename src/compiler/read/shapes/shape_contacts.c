@@ -3,7 +3,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/context/variables.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 #include "read/shapes/shape_meshes.h"
 #include "read/shapes/shapes.h"
 #include "read/shapes/tangents.h"
@@ -20,7 +20,7 @@ struct CompliantLaw {
 /* Two shapes with their poses, and the points at which they may touch. */
 struct ShapeContact {
   struct ContactSide first, second;
-  struct Touches touches;
+  struct ContactPoints contacts;
 };
 
 bool is_of_shapes(xmlNodePtr node) {
@@ -69,7 +69,7 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
   }
   for (int i = 0; i < 2; i++)
     if (shapes[1 - i]->type == SHAPE_PLANE && !prepare_corners(reader, node, shapes[i])) return false;
-  if (count_touches(shapes[0], shapes[1]) > 0) return true;
+  if (count_contact_points(shapes[0], shapes[1]) > 0) return true;
   const char *type = only_on_planes(shapes[0]);
   if (type == NULL) type = only_on_planes(shapes[1]);
   if (type != NULL) {
@@ -87,7 +87,7 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
 size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node) {
   const struct ContactShape *shapes[2];
   check_attributes(reader, node);
-  return find_shapes(reader, node, shapes) ? count_touches(shapes[0], shapes[1]) : 0;
+  return find_shapes(reader, node, shapes) ? count_contact_points(shapes[0], shapes[1]) : 0;
 }
 
 /* Returns the velocity of the material of a shape at a point, along the base's axes. */
@@ -97,20 +97,20 @@ static struct Vector velocity_of_point(struct Graph *graph, const struct Contact
   return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
 }
 
-/* Returns the velocity of the first shape relative to the second one at a touch, along the base's axes. */
-static struct Vector sliding_of_touch(struct Graph *graph, const struct ShapeContact *contact,
-                                      const struct Touch *touch) {
-  return vector_subtract(graph, velocity_of_point(graph, &contact->first, touch->point),
-                         velocity_of_point(graph, &contact->second, touch->point));
+/* Returns the velocity of the first shape relative to the second one at a contact point, along the base's axes. */
+static struct Vector sliding_of_contact(struct Graph *graph, const struct ShapeContact *contact,
+                                        const struct ContactPoint *point) {
+  return vector_subtract(graph, velocity_of_point(graph, &contact->first, point->point),
+                         velocity_of_point(graph, &contact->second, point->point));
 }
 
-/* True if coordinates move the shapes relative to each other at the touch: in translation or rotation. */
-static bool moves_touch(struct Graph *graph, const struct ShapeContact *contact, const struct Touch *touch) {
+/* True if coordinates move the shapes relative to each other at the contact point: in translation or rotation. */
+static bool moves_contact(struct Graph *graph, const struct ShapeContact *contact, const struct ContactPoint *point) {
   const struct Pose *first = &contact->first.pose, *second = &contact->second.pose;
   struct Vector spin = vector_subtract(graph, matrix_apply(graph, &first->rotation, first->angular_velocity),
                                        matrix_apply(graph, &second->rotation, second->angular_velocity));
-  struct Vector sliding = sliding_of_touch(graph, contact, touch);
-  bool moves = graph_depends_on(graph, touch->gap, COORDINATE);
+  struct Vector sliding = sliding_of_contact(graph, contact, point);
+  bool moves = graph_depends_on(graph, point->gap, COORDINATE);
   for (int i = 0; i < 3; i++)
     moves |= graph_depends_on(graph, sliding.along[i], VELOCITY) || graph_depends_on(graph, spin.along[i], VELOCITY);
   return moves;
@@ -123,14 +123,14 @@ static bool moves_touch(struct Graph *graph, const struct ShapeContact *contact,
 static bool check_motion(struct Reader *reader, xmlNodePtr node, const struct ShapeContact *contact) {
   struct Graph *graph = reader->model->graph;
   const char *first = contact->first.shape->name, *second = contact->second.shape->name;
-  for (size_t i = 0; i < contact->touches.count; i++) {
-    const struct Touch *touch = &contact->touches.items[i];
-    if (!moves_touch(graph, contact, touch)) {
+  for (size_t i = 0; i < contact->contacts.count; i++) {
+    const struct ContactPoint *point = &contact->contacts.items[i];
+    if (!moves_contact(graph, contact, point)) {
       report_at(reader, node, "nothing moves '%s' against '%s'; expected shapes of bodies or frames that move", first,
                 second);
       return false;
     }
-    if (is_compliant(node) || graph_depends_on(graph, touch->gap, COORDINATE)) continue;
+    if (is_compliant(node) || graph_depends_on(graph, point->gap, COORDINATE)) continue;
     report_at(reader, node,
               "no coordinate moves '%s' towards '%s' or away from it, so that the force between them is not "
               "determined; expected such a coordinate, or stiffness=\"...\" in N/m",
@@ -142,12 +142,12 @@ static bool check_motion(struct Reader *reader, xmlNodePtr node, const struct Sh
 
 /* Warns of balls whose centre is in the other shape at the start. */
 static void expect_centres_outside(struct Reader *reader, xmlNodePtr node, const struct ShapeContact *contact) {
-  for (size_t i = 0; i < contact->touches.count; i++)
-    if (contact->touches.items[i].distance != ZERO)
+  for (size_t i = 0; i < contact->contacts.count; i++)
+    if (contact->contacts.items[i].distance != ZERO)
       expect_size(reader, node,
                   format_text("the distance of '%s' and '%s' without their radii", contact->first.shape->name,
                               contact->second.shape->name),
-                  contact->touches.items[i].distance, false);
+                  contact->contacts.items[i].distance, false);
 }
 
 static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struct ShapeContact *contact) {
@@ -156,21 +156,21 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   if (reader->diagnostics->errors > 0 || !find_shapes(reader, node, shapes)) return false;
   contact->first = contact_side_of(reader, line, shapes[0]);
   contact->second = contact_side_of(reader, line, shapes[1]);
-  contact->touches = touches_of(reader, line, &contact->first, &contact->second);
+  contact->contacts = contact_points_of(reader, line, &contact->first, &contact->second);
   expect_centres_outside(reader, node, contact);
   return check_motion(reader, node, contact);
 }
 
-const struct RigidTouch *rigid_touches(struct Reader *reader, xmlNodePtr node) {
+const struct RigidContact *rigid_contacts(struct Reader *reader, xmlNodePtr node) {
   struct ShapeContact contact;
   if (!read_contact_of_shapes(reader, node, &contact)) return NULL;
-  struct RigidTouch *touches = allocate(contact.touches.count, sizeof *touches);
-  for (size_t i = 0; i < contact.touches.count; i++) {
-    const struct Touch *touch = &contact.touches.items[i];
-    touches[i].gap = touch->gap;
-    if (has_shape_friction(node)) touches[i].slip = slip_of_touch(reader, &contact.first, &contact.second, touch);
+  struct RigidContact *contacts = allocate(contact.contacts.count, sizeof *contacts);
+  for (size_t i = 0; i < contact.contacts.count; i++) {
+    const struct ContactPoint *point = &contact.contacts.items[i];
+    contacts[i].gap = point->gap;
+    if (has_shape_friction(node)) contacts[i].slip = slip_of_contact(reader, &contact.first, &contact.second, point);
   }
-  return touches;
+  return contacts;
 }
 
 static Node read_law_attribute(struct Reader *reader, xmlNodePtr node, const char *name, const char *unit, Node usual) {
@@ -197,7 +197,7 @@ static Node pressing_force(struct Reader *reader, long line, const struct Compli
   Node is_apart = branch_of(scope, gap, "the gap of the contact", line);
   Node rate = negate(graph, total_time_derivative(scope, gap));
   Node factor = add(graph, ONE, multiply(graph, law->damping, rate));
-  if (law->damping != ZERO) factor = pieces_of(scope, MAXIMUM, factor, ZERO, line);
+  if (law->damping != ZERO) factor = piecewise_function(scope, MAXIMUM, factor, ZERO, line);
   Node force = multiply(graph, multiply(graph, law->stiffness, negate(graph, gap)), factor);
   return choose_node(graph, is_apart, ZERO, force);
 }
@@ -206,13 +206,14 @@ static Node pressing_force(struct Reader *reader, long line, const struct Compli
  * Returns the force on the first shape: the normal force N and the friction -mu N v / sqrt(v^2 + creep^2) against the
  * tangential velocity v.
  */
-static struct Vector force_of_touch(struct Graph *graph, const struct CompliantLaw *law,
-                                    const struct ShapeContact *contact, const struct Touch *touch, Node pressing) {
-  struct Vector force = vector_scale(graph, pressing, touch->normal);
+static struct Vector force_of_contact(struct Graph *graph, const struct CompliantLaw *law,
+                                      const struct ShapeContact *contact, const struct ContactPoint *point,
+                                      Node pressing) {
+  struct Vector force = vector_scale(graph, pressing, point->normal);
   if (law->friction == ZERO) return force;
-  struct Vector sliding = sliding_of_touch(graph, contact, touch);
-  Node along = vector_dot(graph, sliding, touch->normal);
-  sliding = vector_subtract(graph, sliding, vector_scale(graph, along, touch->normal));
+  struct Vector sliding = sliding_of_contact(graph, contact, point);
+  Node along = vector_dot(graph, sliding, point->normal);
+  sliding = vector_subtract(graph, sliding, vector_scale(graph, along, point->normal));
   Node squares = add(graph, vector_dot(graph, sliding, sliding), power_number(graph, law->creep, 2.0));
   Node factor = multiply(graph, multiply(graph, law->friction, pressing), power_number(graph, squares, -0.5));
   return vector_subtract(graph, force, vector_scale(graph, factor, sliding));
@@ -263,12 +264,12 @@ void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
   if (!read_contact_of_shapes(reader, node, &contact)) return;
   reader->model->forces.any = true;
   Node sum = ZERO;
-  for (size_t i = 0; i < contact.touches.count; i++) {
-    const struct Touch *touch = &contact.touches.items[i];
-    Node pressing = pressing_force(reader, line, &law, touch->gap);
-    struct Vector force = force_of_touch(graph, &law, &contact, touch, pressing);
-    add_force_on(reader, line, &contact.first, touch->point, force);
-    add_force_on(reader, line, &contact.second, touch->point, vector_scale(graph, graph_constant(graph, -1.0), force));
+  for (size_t i = 0; i < contact.contacts.count; i++) {
+    const struct ContactPoint *point = &contact.contacts.items[i];
+    Node pressing = pressing_force(reader, line, &law, point->gap);
+    struct Vector force = force_of_contact(graph, &law, &contact, point, pressing);
+    add_force_on(reader, line, &contact.first, point->point, force);
+    add_force_on(reader, line, &contact.second, point->point, vector_scale(graph, graph_constant(graph, -1.0), force));
     sum = add(graph, sum, pressing);
   }
   append_force(reader, node, sum);

@@ -16,13 +16,13 @@ bool has_shape_friction(xmlNodePtr node);
 size_t count_shape_contacts(struct Reader *reader, xmlNodePtr node);
 
 /* A rigid contact at one point; gap in m. */
-struct RigidTouch {
+struct RigidContact {
   Node gap;
   struct Slip slip; /* if the contact has friction */
 };
 
 /* Returns the gap and slip of each of these contacts; NULL after reporting an error. */
-const struct RigidTouch *rigid_touches(struct Reader *reader, xmlNodePtr node);
+const struct RigidContact *rigid_contacts(struct Reader *reader, xmlNodePtr node);
 
 /* Coefficients of a rigid contact: of sliding friction, and of static friction (stiction). */
 struct FrictionCoefficients {

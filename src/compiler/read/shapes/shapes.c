@@ -116,7 +116,7 @@ static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name
  * Sets the minimum of a parameter that is a size, alone or times a positive number, to 0. Importers then know it, and
  * the FMU rejects negative values.
  */
-static void keep_from_negative(struct Reader *reader, Node size) {
+static void require_not_negative(struct Reader *reader, Node size) {
   const struct Graph *graph = reader->model->graph;
   const struct Vertex *vertex = &graph->vertices[size];
   bool is_multiple = vertex->operation == MULTIPLY && graph_is_constant(graph, vertex->left);
@@ -131,7 +131,7 @@ static Node read_size(struct Reader *reader, xmlNodePtr node, const struct Conta
   if (!has_attribute(node, name)) return ZERO;
   Node size = read_length(reader, node, name);
   const char *what = format_text("the %s of the %s '%s'", name, shape_type_names[shape->type], shape->name);
-  keep_from_negative(reader, size);
+  require_not_negative(reader, size);
   if (shape->type == SHAPE_BOX) expect_not_negative(reader, node, what, size, true);
   else expect_size(reader, node, what, size, true);
   return size;
@@ -155,7 +155,7 @@ static void set_frame(struct Reader *reader, xmlNodePtr node, struct ContactShap
 }
 
 /* Sets the rotation by roll, pitch and yaw as in URDF: about the fixed axes x, y, z in this order. */
-static void turn_shape(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
+static void rotate_shape(struct Reader *reader, xmlNodePtr node, struct ContactShape *shape) {
   static const char *const names[3] = {"roll", "pitch", "yaw"};
   struct Pose pose = pose_of_base();
   for (int i = 2; i >= 0; i--) {
@@ -175,7 +175,7 @@ void place_shape(struct Reader *reader, xmlNodePtr node) {
   struct Graph *graph = reader->model->graph;
   struct ContactShape *shape = &reader->model->mechanism.shapes[reader->present->number];
   set_frame(reader, node, shape);
-  turn_shape(reader, node, shape);
+  rotate_shape(reader, node, shape);
   for (int i = 0; i < 3; i++) {
     if (attribute_is(node, "axis", axes[i])) shape->axis = i;
     shape->offset.along[i] = add(graph, shape->offset.along[i], read_length(reader, node, axes[i]));

@@ -63,14 +63,14 @@ static void tangents_of_normal(struct Graph *graph, struct Vector normal, struct
   }
 }
 
-struct Slip slip_of_touch(struct Reader *reader, const struct ContactSide *first, const struct ContactSide *second,
-                          const struct Touch *touch) {
+struct Slip slip_of_contact(struct Reader *reader, const struct ContactSide *first, const struct ContactSide *second,
+                            const struct ContactPoint *point) {
   struct Graph *graph = reader->model->graph;
   struct Vector tangents[2];
-  struct Vector velocity = vector_subtract(graph, velocity_of_material(reader, first, touch->point),
-                                           velocity_of_material(reader, second, touch->point));
+  struct Vector velocity = vector_subtract(graph, velocity_of_material(reader, first, point->point),
+                                           velocity_of_material(reader, second, point->point));
   if (second->shape->type == SHAPE_PLANE) tangents_of_plane(graph, second, tangents);
   else if (first->shape->type == SHAPE_PLANE) tangents_of_plane(graph, first, tangents);
-  else if (!tangents_in_plane(graph, touch->normal, tangents)) tangents_of_normal(graph, touch->normal, tangents);
+  else if (!tangents_in_plane(graph, point->normal, tangents)) tangents_of_normal(graph, point->normal, tangents);
   return (struct Slip){vector_dot(graph, velocity, tangents[0]), vector_dot(graph, velocity, tangents[1])};
 }

@@ -1,7 +1,7 @@
 /* Tangents and slip velocities of contacts between shapes. */
 #pragma once
 
-#include "read/shapes/touches.h"
+#include "read/shapes/contact_points.h"
 
 /*
  * Components, in m/s, of the first shape's velocity relative to the second, along two orthogonal tangents. On a plane
@@ -12,6 +12,6 @@ struct Slip {
   Node along, across;
 };
 
-/* Returns the slip velocity of two shapes at a touch. */
-struct Slip slip_of_touch(struct Reader *reader, const struct ContactSide *first, const struct ContactSide *second,
-                          const struct Touch *touch);
+/* Returns the slip velocity of two shapes at a contact point. */
+struct Slip slip_of_contact(struct Reader *reader, const struct ContactSide *first, const struct ContactSide *second,
+                            const struct ContactPoint *point);

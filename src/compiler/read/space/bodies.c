@@ -55,7 +55,7 @@ static bool take_component(struct Reader *reader, const struct Body *body, xmlNo
   const struct Quantity *known = scope_find(reader->scope, name);
   if (known != NULL) *value = *known;
   *displaced = value->node;
-  reader->model->given.inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
+  reader->model->prescribed.inputs_move |= graph_depends_on(reader->model->graph, value->node, INPUT);
   value->node = without_displacements(reader, body->line, name, value->node);
   return true;
 }
@@ -92,8 +92,8 @@ static void require_accelerations(const struct Reader *reader, const struct Body
   struct Gradient gradient = gradient_by_kinds(model->graph, body->displaced[component], KIND(INPUT));
   for (size_t i = 0; i < gradient.count && (component < 3 ? body->mass.node : body->inertia.node) != ZERO; i++) {
     size_t input = (size_t)graph_symbol_of(model->graph, gradient.symbols[i])->index;
-    Node rate = model->given.input_rates[input];
-    if (rate != ZERO && model->given.input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
+    Node rate = model->prescribed.input_rates[input];
+    if (rate != ZERO && model->prescribed.input_rates[graph_symbol_of(model->graph, rate)->index] != ZERO) continue;
     report_error(reader->diagnostics, body->line,
                  "the position of '%s', which has a mass, needs the second derivative of '%s'; expected %s, or "
                  "mass=\"0\" for a point without mass",

@@ -16,7 +16,7 @@ static bool are_shown(const struct Reader *reader) {
 }
 
 /* Returns "did you mean 'theta'?" for a similar name, or the expected kind of name. */
-static char *meant_coordinate(const struct Reader *reader, const char *name) {
+static char *similar_coordinate(const struct Reader *reader, const char *name) {
   const struct Model *model = reader->model;
   struct SimilarName similar = {.wanted = name};
   for (size_t i = 0; i < model->coordinates.count && are_shown(reader); i++) {
@@ -29,7 +29,7 @@ static char *meant_coordinate(const struct Reader *reader, const char *name) {
                               : copy_text("expected the name of a <coordinate>");
 }
 
-static char *meant_body(const struct Reader *reader, const char *name) {
+static char *similar_body(const struct Reader *reader, const char *name) {
   struct SimilarName similar = {.wanted = name};
   if (are_shown(reader)) similar_consider_all(&similar, reader->bodies);
   return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
@@ -47,7 +47,7 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   struct Model *model = reader->model;
   const struct Symbol *symbol = find_coordinate(reader, coordinate);
   if (symbol == NULL) {
-    char *meant = meant_coordinate(reader, coordinate);
+    char *meant = similar_coordinate(reader, coordinate);
     report_at(reader, node, "there is no coordinate '%s' for this force; %s", coordinate, meant);
     return;
   }
@@ -73,7 +73,7 @@ static void append_point_force(struct Model *model, Node position, Node force) {
 }
 
 static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const char *name, const char *what) {
-  char *meant = meant_body(reader, name);
+  char *meant = similar_body(reader, name);
   report_at(reader, node, "there is no %s '%s' for this %s; %s", what, name, (const char *)node->name, meant);
 }
 
@@ -128,7 +128,7 @@ static void add_cartesian_force(struct Reader *reader, xmlNodePtr node, const ch
 }
 
 /* Returns the part of an angular velocity that is prescribed by time, at zero velocities and rates of inputs. */
-static struct Vector driven_part(const struct Model *model, struct Vector velocity) {
+static struct Vector prescribed_part(const struct Model *model, struct Vector velocity) {
   struct Graph *graph = model->graph;
   Node *at_rest = allocate(graph->symbol_count, sizeof *at_rest);
   for (size_t i = 0; i < graph->symbol_count; i++) {
@@ -150,7 +150,7 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
   struct Gradient gradient = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
   add_virtual_work(model, ONE, &gradient);
-  add_term(model, &model->forces.driven_power, vector_dot(graph, torque, driven_part(model, velocity)));
+  add_term(model, &model->forces.driven_power, vector_dot(graph, torque, prescribed_part(model, velocity)));
   model->forces.torques = make_room(model->forces.torques, model->forces.torque_count, sizeof *model->forces.torques);
   model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};
 }

@@ -227,9 +227,9 @@ static void read_frame(struct Reader *reader, xmlNodePtr node, const char *name)
   if (definitions_are_waiting(reader->definitions)) return;
   struct Model *model = reader->model;
   for (int i = 0; i < 3; i++) {
-    model->given.inputs_move |= graph_depends_on(model->graph, frame.pose.origin.along[i], INPUT);
+    model->prescribed.inputs_move |= graph_depends_on(model->graph, frame.pose.origin.along[i], INPUT);
     for (int j = 0; j < 3; j++)
-      model->given.inputs_move |= graph_depends_on(model->graph, frame.pose.rotation.row[i].along[j], INPUT);
+      model->prescribed.inputs_move |= graph_depends_on(model->graph, frame.pose.rotation.row[i].along[j], INPUT);
   }
   if (names_find(reader->frames, name) == NULL) append_frame(reader, name, frame);
 }

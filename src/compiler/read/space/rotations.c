@@ -58,7 +58,7 @@ static void warn_of_degrees(struct Reader *reader, xmlNodePtr node, struct Quant
                    "the angle is %g rad; expected radians, such as %g*pi/180 for degrees", value, value);
 }
 
-static void turn_by_angle(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
+static void rotate_by_angle(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
   struct Quantity angle = {.node = ZERO};
   struct Vector axis;
   if (!read_axis(reader, node, &axis)) return;
@@ -84,7 +84,7 @@ static void set_norm(struct Reader *reader, xmlNodePtr node, const Node q[4]) {
               frame);
 }
 
-static void turn_by_quaternion(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
+static void rotate_by_quaternion(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
   Node q[4] = {ZERO, ZERO, ZERO, ZERO}, rate[4];
   read_expressions(reader, node, "quaternion", IN_MASS | KIND(COORDINATE) | KIND(TIME), 4, q);
   if (definitions_are_waiting(reader->definitions) || reader->diagnostics->errors > 0) return;
@@ -115,6 +115,6 @@ void check_rotation(struct Reader *reader, xmlNodePtr node) {
 
 void rotate(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {
   if (reader->diagnostics->errors > 0) return; /* check_rotation() may have reported an error */
-  if (has_attribute(node, "quaternion")) turn_by_quaternion(reader, node, pose);
-  else turn_by_angle(reader, node, pose);
+  if (has_attribute(node, "quaternion")) rotate_by_quaternion(reader, node, pose);
+  else rotate_by_angle(reader, node, pose);
 }

@@ -1,5 +1,5 @@
 /*
- * Piecewise functions of tables, with a mode for each knot, see pieces_of_functions.h. A mode of 0, exactly on the
+ * Piecewise functions of tables, with a mode for each knot, see piecewise_functions.h. A mode of 0, exactly on the
  * knot, selects the piece to its right.
  */
 #pragma once
@@ -7,10 +7,10 @@
 #include "read/names/scope.h"
 
 /* Returns x clamped to the interval, minus from. */
-Node way_in(struct Scope *scope, Node x, double from, double to);
+Node clamped_offset(struct Scope *scope, Node x, double from, double to);
 
 /* Returns min(x - start, 0). */
-Node way_before(struct Scope *scope, Node x, double start);
+Node offset_below(struct Scope *scope, Node x, double start);
 
 /* Returns max(x - end, 0). */
-Node way_behind(struct Scope *scope, Node x, double end);
+Node offset_above(struct Scope *scope, Node x, double end);

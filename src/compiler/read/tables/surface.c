@@ -78,12 +78,12 @@ static struct Cardinals cardinals_at(struct Scope *scope, const double *knots, s
   struct Cardinals cardinals = {allocate(count, sizeof(Node)), allocate(count, sizeof(Node)), count};
   cardinals.value[0] = ONE;
   if (!is_constant_outside) {
-    cardinals.slope[0] = way_before(scope, x, knots[0]);
-    cardinals.slope[count - 1] = way_behind(scope, x, knots[count - 1]);
+    cardinals.slope[0] = offset_below(scope, x, knots[0]);
+    cardinals.slope[count - 1] = offset_above(scope, x, knots[count - 1]);
   }
   for (size_t i = 0; i + 1 < count; i++) {
     double h = knots[i + 1] - knots[i];
-    Node t = scale(graph, 1 / h, way_in(scope, x, knots[i], knots[i + 1]));
+    Node t = scale(graph, 1 / h, clamped_offset(scope, x, knots[i], knots[i + 1]));
     add_interval(graph, &cardinals, i, t, h, is_linear);
   }
   return cardinals;

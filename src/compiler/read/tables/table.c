@@ -23,11 +23,11 @@ static Node curve_at(struct Scope *scope, const struct Curve *curve, bool is_con
   struct Graph *graph = scope->graph;
   size_t last = curve->count - 1;
   Node value = graph_constant(graph, curve->y[0]);
-  if (!is_constant_outside) value = add(graph, value, scale(graph, curve->b[0], way_before(scope, x, curve->x[0])));
+  if (!is_constant_outside) value = add(graph, value, scale(graph, curve->b[0], offset_below(scope, x, curve->x[0])));
   for (size_t i = 0; i < last; i++)
-    value = add(graph, value, polynomial(graph, curve, i, way_in(scope, x, curve->x[i], curve->x[i + 1])));
+    value = add(graph, value, polynomial(graph, curve, i, clamped_offset(scope, x, curve->x[i], curve->x[i + 1])));
   if (is_constant_outside) return value;
-  return add(graph, value, scale(graph, curve->b[last], way_behind(scope, x, curve->x[last])));
+  return add(graph, value, scale(graph, curve->b[last], offset_above(scope, x, curve->x[last])));
 }
 
 Node table_at(struct Scope *scope, const struct Table *table, const Node arguments[2], long line) {

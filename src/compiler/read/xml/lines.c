@@ -45,7 +45,7 @@ static void pass_to(struct LineScan *scan, const char *text) {
   while (scan->next < scan->end && !begins(scan, text)) pass(scan);
 }
 
-static void pass_behind(struct LineScan *scan, const char *text) {
+static void pass_after(struct LineScan *scan, const char *text) {
   pass_to(scan, text);
   if (scan->next < scan->end) scan->next += strlen(text);
   else scan->wrong = true;
@@ -108,7 +108,7 @@ static void find_attribute(struct LineScan *scan, xmlNodePtr element) {
 
 /* Advances to the next markup after a text. CDATA sections are part of the text. */
 static void pass_text(struct LineScan *scan) {
-  for (pass_to(scan, "<"); begins(scan, "<![CDATA["); pass_to(scan, "<")) pass_behind(scan, "]]>");
+  for (pass_to(scan, "<"); begins(scan, "<![CDATA["); pass_to(scan, "<")) pass_after(scan, "]]>");
 }
 
 static void find_in_content(struct LineScan *scan, xmlNodePtr first);
@@ -125,13 +125,13 @@ static void find_in_element(struct LineScan *scan, xmlNodePtr element) {
   }
   if (scan->wrong) return;
   bool is_empty = begins(scan, "/>");
-  pass_behind(scan, ">");
+  pass_after(scan, ">");
   set_lines(element, first, scan->line);
   if (is_empty) return;
   find_in_content(scan, element->children);
   pass_text(scan);
   scan->wrong |= !begins(scan, "</");
-  pass_behind(scan, ">");
+  pass_after(scan, ">");
 }
 
 static void find_in_content(struct LineScan *scan, xmlNodePtr first) {
@@ -144,7 +144,7 @@ static void find_in_content(struct LineScan *scan, xmlNodePtr first) {
     if (node->type == XML_ELEMENT_NODE) find_in_element(scan, node);
     else {
       set_line(node, scan->line);
-      pass_behind(scan, node->type == XML_COMMENT_NODE ? "-->" : "?>");
+      pass_after(scan, node->type == XML_COMMENT_NODE ? "-->" : "?>");
     }
   }
 }
@@ -152,7 +152,7 @@ static void find_in_content(struct LineScan *scan, xmlNodePtr first) {
 void lines_find(xmlDocPtr document, const char *text, size_t length) {
   struct LineScan scan = {.next = text, .end = text + length, .line = 1};
   pass_to(&scan, "<");
-  if (begins(&scan, "<?xml ")) pass_behind(&scan, "?>");
+  if (begins(&scan, "<?xml ")) pass_after(&scan, "?>");
   find_in_content(&scan, document->children);
 }
 

@@ -30,7 +30,7 @@ static char pass(struct TextScan *scan) {
 }
 
 /* Advances to the end of the next occurrence of the text. */
-static void pass_behind(struct TextScan *scan, const char *text) {
+static void pass_after(struct TextScan *scan, const char *text) {
   while (scan->next < scan->end && !begins(scan, text)) pass(scan);
   if (scan->next < scan->end) scan->next += strlen(text);
 }
@@ -56,9 +56,9 @@ static bool pass_markup(struct TextScan *scan, struct Diagnostics *diagnostics) 
   long line = scan->line;
   scan->elements += !begins(scan, "</");
   scan->attributes = 0;
-  if (begins(scan, "<!--")) pass_behind(scan, "-->");
-  else if (begins(scan, "<![CDATA[")) pass_behind(scan, "]]>");
-  else if (begins(scan, "<?")) pass_behind(scan, "?>");
+  if (begins(scan, "<!--")) pass_after(scan, "-->");
+  else if (begins(scan, "<![CDATA[")) pass_after(scan, "]]>");
+  else if (begins(scan, "<?")) pass_after(scan, "?>");
   else pass_tag(scan);
   if (scan->elements > ELEMENT_LIMIT)
     report_error(diagnostics, line, "the file has more than %d elements; expected fewer, and <for> for repetitions",

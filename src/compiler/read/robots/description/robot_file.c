@@ -114,7 +114,7 @@ double number_not_negative(struct RobotFile *file, xmlNodePtr node, const char *
   return value;
 }
 
-bool says_nothing(const char *text) {
+bool requests_nothing(const char *text) {
   static const char *const nothing[] = {"false", "none", "auto", "disable"};
   double values[NUMBERS_LIMIT];
   for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
@@ -143,7 +143,7 @@ static void check_attribute(struct RobotFile *file, xmlNodePtr node, const char 
     is_known_element = true;
     if (!is_among(row->names, name)) continue;
     remedy = row->remedy;
-    if (remedy == NULL || !condition_holds(file->options, row->condition) || says_nothing(attribute(node, name)))
+    if (remedy == NULL || !condition_holds(file->options, row->condition) || requests_nothing(attribute(node, name)))
       return;
   }
   if (is_known_element)

@@ -41,7 +41,7 @@ void leave_out_others(struct RobotFile *file, xmlNodePtr parent, const char *con
 void warn_unread(struct RobotFile *file, long line, const char *what, const char *remedy);
 
 /* True if a text requests nothing: "false", "none", "auto", "disable", or zeros. */
-bool says_nothing(const char *text);
+bool requests_nothing(const char *text);
 
 /* When an attribute influences the motion: always, with a ground, or with stops. */
 enum Condition { ALWAYS_ACTS, ACTS_ON_GROUND, ACTS_AT_STOPS };

@@ -89,7 +89,7 @@ static const struct ContactRule *find_pair(const struct Mjcf *mjcf, const struct
   return find_rule(mjcf, true, first->name, second->name);
 }
 
-bool mjcf_touches(const struct Mjcf *mjcf, const struct MjcfContact *contact) {
+bool mjcf_may_collide(const struct Mjcf *mjcf, const struct MjcfContact *contact) {
   bool is_in_pair = false;
   for (size_t i = 0; i < mjcf->rule_count; i++)
     for (int k = 0; k < 2; k++)

@@ -10,7 +10,7 @@ void mjcf_read_rule(struct Mjcf *mjcf, xmlNodePtr node);
 struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node);
 
 /* True if the geom can touch any other one, by its masks or a <pair>. */
-bool mjcf_touches(const struct Mjcf *mjcf, const struct MjcfContact *contact);
+bool mjcf_may_collide(const struct Mjcf *mjcf, const struct MjcfContact *contact);
 
 /* Records the geom and sets its friction on the ground; called after the geoms of the <worldbody> are read. */
 void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct Collision *shape);

@@ -171,7 +171,7 @@ static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, cons
 /* Adds a geom that can touch to the collisions, any other to the visuals. */
 static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct RobotLink *link) {
   struct MjcfContact contact = mjcf_contact(mjcf, node);
-  bool touches = mjcf_touches(mjcf, &contact);
+  bool touches = mjcf_may_collide(mjcf, &contact);
   bool meets_ground = touches && link_touches_ground(mjcf->file.options, link->name);
   const char *problem = problem_of(geom, meets_ground);
   if (geom->type == PLANE) {

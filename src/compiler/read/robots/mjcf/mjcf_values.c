@@ -78,7 +78,7 @@ const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name
   return NULL;
 }
 
-static bool says_a_law(xmlNodePtr node) {
+static bool defines_law(xmlNodePtr node) {
   size_t i = 0;
   while (of_laws[i] != NULL && !has_attribute(node, of_laws[i])) i++;
   return of_laws[i] != NULL;
@@ -89,11 +89,11 @@ static bool says_a_law(xmlNodePtr node) {
  * <default> sets the gain and bias of all kinds of actuators; a <general> only as far as it says so, and a <motor>
  * resets them. *is_set_back: a <motor> in an inner class, or further down, has reset them.
  */
-static bool disturbs(xmlNodePtr found, xmlNodePtr node, bool *is_set_back) {
+static bool overrides_law(xmlNodePtr found, xmlNodePtr node, bool *is_set_back) {
   if (!is_actuator(found)) return false;
-  if (is_element(found, (const char *)node->name)) return *is_set_back && says_a_law(found);
+  if (is_element(found, (const char *)node->name)) return *is_set_back && defines_law(found);
   *is_set_back |= is_element(found, "motor");
-  return !is_element(found, "motor") && (!is_element(found, "general") || says_a_law(found));
+  return !is_element(found, "motor") && (!is_element(found, "general") || defines_law(found));
 }
 
 void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node) {
@@ -101,7 +101,7 @@ void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node) {
   if (is_element(node, "motor")) return;
   for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class))
     for (xmlNodePtr found = class->last; found != NULL; found = found->prev) {
-      if (!disturbs(found, node, &is_set_back)) continue;
+      if (!overrides_law(found, node, &is_set_back)) continue;
       report_error(mjcf->file.diagnostics, line_of(node),
                    "<%s> inherits the <%s> of a <default>; expected defaults of each kind of actuator in a class of "
                    "its own",
@@ -307,7 +307,7 @@ void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy)
 
 void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
   const char *text = mjcf_text(mjcf, node, name);
-  if (text == NULL || says_nothing(text)) return;
+  if (text == NULL || requests_nothing(text)) return;
   report_error(mjcf->file.diagnostics, line_of(node),
                "%s=\"%.60s\" of <%s> is not read, and would change the motion; expected a file without it", name, text,
                (const char *)node->name);

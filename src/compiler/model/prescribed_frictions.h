@@ -7,4 +7,4 @@
  * Finds such frictions. Removes their constraints, since velocity = 0 would contradict the prescribed motion. The mode
  * of each becomes that of a branch with the velocity as its indicator; a friction in a plane keeps its own mode.
  */
-void find_given_frictions(struct Model *model);
+void find_prescribed_frictions(struct Model *model);

@@ -17,7 +17,7 @@ Node last_sign_of(struct Scope *scope, Node node, long line);
  * Returns a mode with the sign of a condition on parameters. By it an event detects that setting parameters changed the
  * condition.
  */
-Node tuned_condition(struct Scope *scope, Node node, long line);
+Node condition_of_parameters(struct Scope *scope, Node node, long line);
 
 /* A bit of kinds beyond those of symbols: whether contacts are closed or frictions slide. */
 enum { CONTACT_STATE = 1 << 29 };
@@ -26,16 +26,16 @@ enum { CONTACT_STATE = 1 << 29 };
 enum { AT_INSTANT = 1 << 28 };
 
 /* Returns the kinds of symbols that a node depends on, including those that decide its modes, with CONTACT_STATE. */
-unsigned kinds_that_decide(const struct Scope *scope, Node node);
+unsigned deciding_kinds(const struct Scope *scope, Node node);
 
 /*
  * Replaces the piecewise functions of a node that was parsed while the scope kept them whole. Does nothing while the
  * scope still does. line: for messages.
  */
-Node with_pieces(struct Scope *scope, Node node, long line);
+Node with_modes(struct Scope *scope, Node node, long line);
 
 /* Returns floor(node). Its events are the zeros of sin(pi x), whose sign gives the parity of floor(x). */
 Node floor_of(struct Scope *scope, Node node, long line);
 
 /* Returns abs, sign, min or max of nodes in terms of modes. */
-Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line);
+Node piecewise_function(struct Scope *scope, enum Operation operation, Node left, Node right, long line);

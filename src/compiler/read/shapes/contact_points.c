@@ -7,16 +7,16 @@
  *
  * C. Ericson, Real-Time Collision Detection, 2005, section 5.1.
  */
-#include "read/shapes/touches.h"
+#include "read/shapes/contact_points.h"
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 
 /* Points on each rim of a cylinder, and the largest number of points of a shape. */
 enum { RIM_POINTS = 8, RIMS_POINTS = 2 * RIM_POINTS, MOST_POINTS = MOST_CORNERS };
 
-/* Two shapes, with the graph and scope for expressions of their touches. */
+/* Two shapes, with the graph and scope for expressions of their contacts. */
 struct ShapePair {
   struct Scope *scope;
   struct Graph *graph;
@@ -24,7 +24,7 @@ struct ShapePair {
   const struct ContactSide *first, *second;
 };
 
-/* Centres of balls of a common radius; the touches of a shape with a plane are on these balls. */
+/* Centres of balls of a common radius; the contact points of a shape with a plane are on these balls. */
 struct BallCentres {
   struct Vector positions[MOST_POINTS]; /* along the axes of the shape's frame */
   size_t count;
@@ -134,7 +134,7 @@ static Node length_of(struct Graph *graph, struct Vector vector) {
 }
 
 /* The first shape's points on the second shape's plane. */
-static void touch_plane(const struct ShapePair *pair, struct Touches *touches) {
+static void plane_contacts(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   struct BallCentres points = points_of(graph, pair->first->shape);
   struct Vector normal = axis_of(pair, pair->second), ground = middle_of(pair, pair->second);
@@ -142,8 +142,8 @@ static void touch_plane(const struct ShapePair *pair, struct Touches *touches) {
     struct Vector centre = position_at(graph, &pair->first->pose, points.positions[i]);
     Node height = vector_dot(graph, normal, vector_subtract(graph, centre, ground));
     struct Vector down = vector_scale(graph, negate(graph, points.radius), normal);
-    touches->items[touches->count++] =
-        (struct Touch){vector_add(graph, centre, down), normal, subtract(graph, height, points.radius), ZERO};
+    contacts->items[contacts->count++] =
+        (struct ContactPoint){vector_add(graph, centre, down), normal, subtract(graph, height, points.radius), ZERO};
   }
 }
 
@@ -151,7 +151,7 @@ static void touch_plane(const struct ShapePair *pair, struct Touches *touches) {
  * The first shape, an ellipsoid, on the second shape's plane. With the half axes as the matrix A and the normal n along
  * them, the lowest point is -A^2 n / |A n|, and |A n| is the support function.
  */
-static void touch_ellipsoid(const struct ShapePair *pair, struct Touches *touches) {
+static void ellipsoid_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   struct Vector normal = axis_of(pair, pair->second), centre = middle_of(pair, pair->first), lowest;
   struct Vector own = matrix_apply_transposed(graph, &pair->first->pose.rotation, normal);
@@ -163,42 +163,42 @@ static void touch_ellipsoid(const struct ShapePair *pair, struct Touches *touche
   Node reach = power_number(graph, vector_dot(graph, lowest, own), 0.5);
   lowest = rotated_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, reach, -1.0)), lowest));
   Node height = vector_dot(graph, normal, vector_subtract(graph, centre, middle_of(pair, pair->second)));
-  touches->items[touches->count++] =
-      (struct Touch){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach), ZERO};
+  contacts->items[contacts->count++] =
+      (struct ContactPoint){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach), ZERO};
 }
 
-/* Appends the touch of two balls about the nearest points of two shapes: the first point, and the vector to it. */
-static void touch_balls(const struct ShapePair *pair, struct Vector first, struct Vector between, Node second_radius,
-                        struct Touches *touches) {
+/* Appends the contact point of two balls about the nearest points of two shapes: the first point, and the vector to it. */
+static void append_ball_contact(const struct ShapePair *pair, struct Vector first, struct Vector between,
+                                Node second_radius, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   Node radius = pair->first->shape->radius, distance = length_of(graph, between);
   struct Vector normal = vector_scale(graph, power_number(graph, distance, -1.0), between);
   struct Vector point = vector_subtract(graph, first, vector_scale(graph, radius, normal));
   Node gap = subtract(graph, subtract(graph, distance, radius), second_radius);
-  touches->items[touches->count++] = (struct Touch){point, normal, gap, distance};
+  contacts->items[contacts->count++] = (struct ContactPoint){point, normal, gap, distance};
 }
 
 /* Clamps a length to the interval of the size `whole` about 0. */
 static Node clamp(const struct ShapePair *pair, Node length, Node whole) {
   Node half = scale(pair->graph, 0.5, whole);
-  Node above = pieces_of(pair->scope, MAXIMUM, length, negate(pair->graph, half), pair->line);
-  return pieces_of(pair->scope, MINIMUM, above, half, pair->line);
+  Node above = piecewise_function(pair->scope, MAXIMUM, length, negate(pair->graph, half), pair->line);
+  return piecewise_function(pair->scope, MINIMUM, above, half, pair->line);
 }
 
-static void touch_sphere(const struct ShapePair *pair, struct Touches *touches) {
+static void sphere_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Vector centre = middle_of(pair, pair->first);
   struct Vector between = vector_subtract(pair->graph, centre, middle_of(pair, pair->second));
-  touch_balls(pair, centre, between, pair->second->shape->radius, touches);
+  append_ball_contact(pair, centre, between, pair->second->shape->radius, contacts);
 }
 
-static void touch_capsule(const struct ShapePair *pair, struct Touches *touches) {
+static void capsule_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   struct Vector centre = middle_of(pair, pair->first), middle = middle_of(pair, pair->second);
   struct Vector axis = axis_of(pair, pair->second);
   Node along = vector_dot(graph, axis, vector_subtract(graph, centre, middle));
   along = clamp(pair, along, pair->second->shape->length);
   struct Vector nearest = vector_add(graph, middle, vector_scale(graph, along, axis));
-  touch_balls(pair, centre, vector_subtract(graph, centre, nearest), pair->second->shape->radius, touches);
+  append_ball_contact(pair, centre, vector_subtract(graph, centre, nearest), pair->second->shape->radius, contacts);
 }
 
 /* Returns the centre of the first shape relative to the second, along the axes of the second. */
@@ -209,19 +209,19 @@ static struct Vector seen_from_second(const struct ShapePair *pair) {
 }
 
 /* Both points are relative to the second shape, along its axes: inside of it their difference is 0 without rounding. */
-static void touch_nearest(const struct ShapePair *pair, struct Vector seen, struct Vector nearest,
-                          struct Touches *touches) {
+static void append_nearest_contact(const struct ShapePair *pair, struct Vector seen, struct Vector nearest,
+                                   struct ContactPoints *contacts) {
   struct Vector between = rotated_by(pair, pair->second, vector_subtract(pair->graph, seen, nearest));
-  touch_balls(pair, middle_of(pair, pair->first), between, ZERO, touches);
+  append_ball_contact(pair, middle_of(pair, pair->first), between, ZERO, contacts);
 }
 
-static void touch_box(const struct ShapePair *pair, struct Touches *touches) {
+static void box_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Vector seen = seen_from_second(pair), nearest;
   for (int i = 0; i < 3; i++) nearest.along[i] = clamp(pair, seen.along[i], pair->second->shape->size.along[i]);
-  touch_nearest(pair, seen, nearest, touches);
+  append_nearest_contact(pair, seen, nearest, contacts);
 }
 
-static void touch_cylinder(const struct ShapePair *pair, struct Touches *touches) {
+static void cylinder_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   const struct ContactShape *shape = pair->second->shape;
   struct Vector seen = seen_from_second(pair), nearest = seen;
@@ -234,14 +234,14 @@ static void touch_cylinder(const struct ShapePair *pair, struct Touches *touches
   nearest.along[across] = multiply(graph, share, seen.along[across]);
   nearest.along[beside] = multiply(graph, share, seen.along[beside]);
   nearest.along[shape->axis] = clamp(pair, seen.along[shape->axis], shape->length);
-  touch_nearest(pair, seen, nearest, touches);
+  append_nearest_contact(pair, seen, nearest, contacts);
 }
 
 /*
  * Nearest points of two segments: the nearest point of the infinite lines is clamped to the first segment, projected to
  * the second and clamped, and projected back and clamped. This is exact (Ericson, section 5.1.9).
  */
-static void touch_capsules(const struct ShapePair *pair, struct Touches *touches) {
+static void capsules_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   static const double nothing = 1e-12; /* for parallel lines, where any point is nearest */
   struct Graph *graph = pair->graph;
   struct Vector first = middle_of(pair, pair->first), second = middle_of(pair, pair->second);
@@ -255,19 +255,19 @@ static void touch_capsules(const struct ShapePair *pair, struct Touches *touches
   s = clamp(pair, subtract(graph, multiply(graph, t, uw), along_u), pair->first->shape->length);
   struct Vector nearest = vector_add(graph, first, vector_scale(graph, s, u));
   struct Vector other = vector_add(graph, second, vector_scale(graph, t, w));
-  touch_balls(pair, nearest, vector_subtract(graph, nearest, other), pair->second->shape->radius, touches);
+  append_ball_contact(pair, nearest, vector_subtract(graph, nearest, other), pair->second->shape->radius, contacts);
 }
 
-typedef void TouchFunction(const struct ShapePair *pair, struct Touches *touches);
+typedef void ContactFunction(const struct ShapePair *pair, struct ContactPoints *contacts);
 
 /* By types of the first and second shape. Pairs in the other order are exchanged. */
-static TouchFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
-    [SHAPE_SPHERE] = {touch_plane, touch_sphere, touch_box, touch_cylinder, touch_capsule},
-    [SHAPE_BOX] = {touch_plane},
-    [SHAPE_CYLINDER] = {touch_plane},
-    [SHAPE_CAPSULE] = {[SHAPE_PLANE] = touch_plane, [SHAPE_CAPSULE] = touch_capsules},
-    [SHAPE_MESH] = {touch_plane},
-    [SHAPE_ELLIPSOID] = {touch_ellipsoid},
+static ContactFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
+    [SHAPE_SPHERE] = {plane_contacts, sphere_contact, box_contact, cylinder_contact, capsule_contact},
+    [SHAPE_BOX] = {plane_contacts},
+    [SHAPE_CYLINDER] = {plane_contacts},
+    [SHAPE_CAPSULE] = {[SHAPE_PLANE] = plane_contacts, [SHAPE_CAPSULE] = capsules_contact},
+    [SHAPE_MESH] = {plane_contacts},
+    [SHAPE_ELLIPSOID] = {ellipsoid_contact},
 };
 
 static size_t point_count(const struct ContactShape *shape) {
@@ -283,22 +283,23 @@ static size_t point_count(const struct ContactShape *shape) {
   }
 }
 
-size_t count_touches(const struct ContactShape *first, const struct ContactShape *second) {
+size_t count_contact_points(const struct ContactShape *first, const struct ContactShape *second) {
   if (functions[first->type][second->type] != NULL) return second->type == SHAPE_PLANE ? point_count(first) : 1;
   if (functions[second->type][first->type] != NULL) return first->type == SHAPE_PLANE ? point_count(second) : 1;
   return 0;
 }
 
-struct Touches touches_of(struct Reader *reader, long line, const struct ContactSide *first,
-                          const struct ContactSide *second) {
+struct ContactPoints contact_points_of(struct Reader *reader, long line, const struct ContactSide *first,
+                                       const struct ContactSide *second) {
   struct Graph *graph = reader->model->graph;
-  TouchFunction *touch = functions[first->shape->type][second->shape->type];
-  bool is_exchanged = touch == NULL;
+  ContactFunction *append_contacts = functions[first->shape->type][second->shape->type];
+  bool is_exchanged = append_contacts == NULL;
   struct ShapePair pair = {reader->scope, graph, line, is_exchanged ? second : first, is_exchanged ? first : second};
-  if (is_exchanged) touch = functions[second->shape->type][first->shape->type];
-  struct Touches touches = {allocate(count_touches(first->shape, second->shape), sizeof *touches.items), 0};
-  touch(&pair, &touches);
-  for (size_t i = 0; i < touches.count && is_exchanged; i++)
-    touches.items[i].normal = vector_scale(graph, graph_constant(graph, -1.0), touches.items[i].normal);
-  return touches;
+  if (is_exchanged) append_contacts = functions[second->shape->type][first->shape->type];
+  struct ContactPoints contacts = {allocate(count_contact_points(first->shape, second->shape), sizeof *contacts.items),
+                                   0};
+  append_contacts(&pair, &contacts);
+  for (size_t i = 0; i < contacts.count && is_exchanged; i++)
+    contacts.items[i].normal = vector_scale(graph, graph_constant(graph, -1.0), contacts.items[i].normal);
+  return contacts;
 }

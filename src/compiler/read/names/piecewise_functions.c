@@ -1,4 +1,4 @@
-#include "read/names/pieces_of_functions.h"
+#include "read/names/piecewise_functions.h"
 
 #include <math.h>
 
@@ -18,7 +18,7 @@ static bool depends_on_contacts(const struct Switches *switches, const struct Co
   return determines;
 }
 
-unsigned kinds_that_decide(const struct Scope *scope, Node node) {
+unsigned deciding_kinds(const struct Scope *scope, Node node) {
   const struct Graph *graph = scope->graph;
   unsigned kinds = graph->vertices[node].kinds;
   if (scope->switches == NULL || !graph_depends_on(graph, node, MODE)) return kinds;
@@ -42,7 +42,7 @@ static Node mode_of(struct Scope *scope, Node indicator, const char *function, l
   Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
   append_branch(switches, (struct Branch){.mode = mode,
                                           .indicator = indicator,
-                                          .kinds = kinds_that_decide(scope, indicator),
+                                          .kinds = deciding_kinds(scope, indicator),
                                           .is_last_sign = is_last_sign,
                                           .function = function,
                                           .line = scope_line(scope, line)});
@@ -74,11 +74,11 @@ Node last_sign_of(struct Scope *scope, Node node, long line) {
   return sign_of(scope, node, of_event, line, true);
 }
 
-Node tuned_condition(struct Scope *scope, Node node, long line) {
+Node condition_of_parameters(struct Scope *scope, Node node, long line) {
   return mode_of(scope, node, of_event, line, false);
 }
 
-Node pieces_of(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
+Node piecewise_function(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
   struct Graph *graph = scope->graph;
   bool has_two = operation_arity(operation) == 2;
   Node turning = has_two ? subtract(graph, left, right) : left;
@@ -115,7 +115,7 @@ Node floor_of(struct Scope *scope, Node node, long line) {
 }
 
 /* Returns 1 if left < right, else 0, in terms of a mode. Derivatives of min and max contain it. */
-static Node pieces_of_less(struct Scope *scope, Node left, Node right, long line) {
+static Node piecewise_less(struct Scope *scope, Node left, Node right, long line) {
   Node difference = subtract(scope->graph, right, left);
   if (graph_is_constant_in_time(scope->graph, difference)) return function(scope->graph, LESS, left, right);
   return function(scope->graph, GUARD, branch_of(scope, difference, "a condition", line), ONE);
@@ -127,16 +127,16 @@ static Node rebuilt(struct Scope *scope, enum Operation operation, Node left, No
   case ADD: return add(graph, left, right);
   case MULTIPLY: return multiply(graph, left, right);
   case POWER: return power(graph, left, right);
-  case LESS: return pieces_of_less(scope, left, right, line);
+  case LESS: return piecewise_less(scope, left, right, line);
   case FLOOR: return floor_of(scope, left, line);
   default:
-    return functions[operation].has_pieces ? pieces_of(scope, operation, left, right, line)
+    return functions[operation].has_pieces ? piecewise_function(scope, operation, left, right, line)
                                            : function(graph, operation, left, right);
   }
 }
 
 /* Collects the nodes in a cone of its own, as making modes uses that of the graph. */
-Node with_pieces(struct Scope *scope, Node node, long line) {
+Node with_modes(struct Scope *scope, Node node, long line) {
   const struct Graph *graph = scope->graph;
   if (keeps_whole(scope)) return node;
   struct Cone *cone = cone_create();

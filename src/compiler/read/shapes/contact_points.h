@@ -4,15 +4,15 @@
 #include "read/context/attributes.h"
 
 /* A point of possible contact, in vectors along the base's axes. */
-struct Touch {
+struct ContactPoint {
   struct Vector point;  /* m */
   struct Vector normal; /* unit normal, pointing to the first shape */
   Node gap;             /* m, negative if the shapes overlap */
   Node distance;        /* m, from the centre of a ball to the other shape: without a normal at 0; ZERO for planes */
 };
 
-struct Touches {
-  struct Touch *items;
+struct ContactPoints {
+  struct ContactPoint *items;
   size_t count;
 };
 
@@ -26,11 +26,11 @@ struct ContactSide {
 struct ContactSide contact_side_of(struct Reader *reader, long line, const struct ContactShape *shape);
 
 /*
- * Returns the number of touches of two shapes, 0 if there is no closed form. May be called before the shapes are
+ * Returns the number of contact points of two shapes, 0 if there is no closed form. May be called before the shapes are
  * placed, but after the corners of meshes are found.
  */
-size_t count_touches(const struct ContactShape *first, const struct ContactShape *second);
+size_t count_contact_points(const struct ContactShape *first, const struct ContactShape *second);
 
-/* Returns the touches, count_touches() of them. */
-struct Touches touches_of(struct Reader *reader, long line, const struct ContactSide *first,
-                          const struct ContactSide *second);
+/* Returns the contact points, count_contact_points() of them. */
+struct ContactPoints contact_points_of(struct Reader *reader, long line, const struct ContactSide *first,
+                                       const struct ContactSide *second);
