@@ -34,6 +34,8 @@ function variableOf(attributes) {
   if (role) Object.assign(known, { role, start: numberOf(attributes.start ?? "0") });
   known.isOutput = attributes.causality === "output";
   known.isMoving = attributes.variability === "continuous" && !["independent", "parameter"].includes(attributes.causality);
+  known.derivativeOf = Number(attributes.derivative ?? 0) - 1; // the index of a variable, or -1
+  known.nominal = Math.abs(Number(attributes.nominal ?? 1));
   known.isDiscrete = attributes.variability === "discrete";
   known.isFixed = attributes.variability === "fixed";
   for (const name of ["min", "max"]) if (name in attributes) known[name] = Number(attributes[name]);

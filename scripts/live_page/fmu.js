@@ -85,6 +85,15 @@ class Fmu {
     return new Float64Array(this.wasm.memory.buffer, address + offset, count).slice();
   }
 
+  // Returns the derivatives of the variables with these references by one with the reference `known`.
+  derivative(references, known) {
+    const count = references.length, offset = 8 * Math.ceil((count + 1) / 2), address = this.memory.reserve(offset + 8 * (count + 1)), { buffer } = this.wasm.memory;
+    new Uint32Array(buffer, address, count + 1).set([known, ...references]);
+    new Float64Array(buffer, address + offset, 1)[0] = 1;
+    this.check(this.wasm.fmi2GetDirectionalDerivative(this.instance, address + 4, count, address, 1, address + offset, address + offset + 8));
+    return [...new Float64Array(this.wasm.memory.buffer, address + offset + 8, count)];
+  }
+
   // Returns the number of events so far; 0 if the system has none.
   events() {
     this.counter ??= this.description.variables.find(({ name, type }) => name === "events" && type === "Integer") ?? 0;

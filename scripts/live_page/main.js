@@ -119,7 +119,9 @@ const handlers = {
     controls.get(about)?.showMessage("");
     showMessage("");
   },
-  rejected({ message, about, value, previous }) {
+  linearized: showLinearization,
+  rejected({ message, about, value, previous, hasEndedGhost }) {
+    if (hasEndedGhost) $("ghost").value = "none";
     if (controls.has(about)) controls.get(about).reject(message, value, previous);
     else showMessage(message);
   },
@@ -245,16 +247,15 @@ function save(name, content, type) {
 // Returns the controls whose values differ from those of the FMU.
 const settings = () => [...controls].filter(([index, control]) => control.value !== description.variables[index].start);
 
-// Starts or ends a second run, whose first start value differs slightly.
-function toggleGhost() {
-  const start = [...controls].find(([index]) => description.variables[index].role === "start");
-  const differences = history.runs > 1 || !start ? null : [...settings(), start].map(([index, control]) => [index, control.value + (index === start[0] ? GHOST : 0)]);
-  send("ghost", { differences });
+// Restarts with a second run of the chosen kind, or without one. The first start value of the kind "near" differs slightly.
+function chooseGhost() {
+  const kind = $("ghost").value, [index, control] = [...controls].find(([index]) => description.variables[index].role === "start");
+  send("ghost", { kind, differences: kind === "near" ? [[index, control.value + GHOST]] : [] });
 }
 
 function addActions() {
-  $("ghost").addEventListener("click", toggleGhost);
-  $("ghost").hidden = ![...controls].some(([index]) => description.variables[index].role === "start");
+  $("ghost").addEventListener("change", chooseGhost);
+  $("ghostChoice").hidden = ![...controls].some(([index]) => description.variables[index].role === "start");
   $("play").addEventListener("click", play);
   for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => move(name));
   $("speed").addEventListener("input", setSpeed);
@@ -360,6 +361,7 @@ async function begin() {
   if (!recording) {
     addControls();
     addPresets();
+    addLinearization();
   }
   addPlots();
   addActions();
@@ -375,7 +377,7 @@ async function begin() {
   } else $("view").remove();
   document.body.classList.toggle("plain", sceneParts.length === 0);
   document.body.classList.toggle("recorded", Boolean(recording));
-  for (const name of ["link", "ghost", "periodChoice"]) $(name).hidden ||= Boolean(recording);
+  for (const name of ["link", "ghostChoice", "periodChoice"]) $(name).hidden ||= Boolean(recording);
   await (recording ? playRecording() : runFmu());
   requestAnimationFrame(frame);
   document.body.dataset.ready = "true";

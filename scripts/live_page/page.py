@@ -23,9 +23,9 @@ HERE = Path(__file__).resolve().parent
 THREE_FILES = ("three.min.js", "examples/js/controls/OrbitControls.js")
 THREE = next((folder for folder in (HERE.parent / "three", Path("/usr/share/javascript/three")) if (folder / THREE_FILES[0]).exists()), None)
 THREE_LICENSES = (HERE.parent / "three" / "copyright", Path("/usr/share/doc/libjs-three/copyright"))
-SCRIPTS = ("description.js", "history.js", "plot.js", "controls.js", "shapes.js", "lines.js", "arrows.js", "scene.js", "pull.js", "inputs.js", "video.js", "system.js", "energies.js", "presentation.js", "presets.js", "main.js")
+SCRIPTS = ("description.js", "history.js", "plot.js", "controls.js", "shapes.js", "lines.js", "arrows.js", "scene.js", "pull.js", "inputs.js", "video.js", "system.js", "energies.js", "presentation.js", "presets.js", "equilibrium.js", "main.js")
 BEGIN = ("unpacking.js", "begin.js")
-COMMON_WORKER = ("fmu.js", "variants.js", "worker.js")
+COMMON_WORKER = ("fmu.js", "variants.js", "linear_algebra.js", "linearization.js", "linear_motion.js", "worker.js")
 MOST_ROWS, MOST_NUMBERS = 2000, 300_000  # of a recording, to bound the size of its page
 SHORTEST, LONGEST = 2.0, 60.0  # recordings of a length between these, in s, are played in real time
 PLAYED = 10.0  # s, playing time of shorter and longer recordings
@@ -49,7 +49,8 @@ def _interleaved(modules):
 
 
 def script_of(names):
-    return "\n".join((HERE / name).read_text(encoding="utf-8") for name in names)
+    """Return the scripts one after another, without the lines that are comments and without indentation."""
+    return re.sub(r"^ *(//.*\n)?", "", "\n".join((HERE / name).read_text(encoding="utf-8") for name in names), flags=re.M)
 
 
 def renderer():

@@ -10,7 +10,7 @@ from ..problem import Problem
 
 DRIVER = Path(__file__).resolve().parent / "driver.c"
 EXPORTS = ["Reset", "SetupExperiment", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetFMUstate", "SetFMUstate",
-           "GetReal", "GetInteger", "SetReal", "SetInteger", "SetBoolean"]  # fmt: skip
+           "GetReal", "GetInteger", "GetDirectionalDerivative", "SetReal", "SetInteger", "SetBoolean"]  # fmt: skip
 # As in scripts/cross.py: no fused multiply-add, no unused functions.
 FLAGS = ["-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c11", "-fvisibility=hidden", "-ffp-contract=off",
          "-ffunction-sections", "-fdata-sections", "-fno-sanitize=all", "-Wl,--gc-sections"]  # fmt: skip

@@ -12,7 +12,8 @@ let shipped, pulled = null, active; // variants: as shipped, with inputs that pu
 let values = [new Map(), new Map()]; // settings of each FMU, by the index of the variable
 let time = 0, speed = 1, playing = false, due = 0, lastTick = 0; // due: s that are still to be simulated; lastTick: in ms
 let period = 0; // s between points of the section; 0 for none
-let ghost = null; // the second FMU while it does not run
+let ghostKind = "none", exactGhost = null, linearGhost = null; // the second run, and those that are created once
+let linearizer = null; // the FMU with which equilibria are found
 
 const post = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);
 
@@ -120,16 +121,33 @@ function restart() {
   active = shipped;
   due = 0;
   time = description.startTime;
-  active.fmus.forEach((fmu, i) => fmu.start(values[i]));
+  const [fmu, ghost] = active.fmus;
+  fmu.start(values[0]);
+  if (ghost) startGhost(ghost);
 }
+
+// Starts the second run; ends it if that fails, as where there is no equilibrium to linearize about.
+function startGhost(ghost) {
+  try {
+    ghost.start(values[1]);
+  } catch (problem) {
+    shipped.fmus.length = 1;
+    ghostKind = "none";
+    reportError(problem, { hasEndedGhost: true });
+  }
+}
+
+// True if a setting applies to a run: the settings of a ghost that keeps them do not change, but for inputs, which both runs share.
+const isFor = (i, { role }) => i === 0 || ghostKind !== "kept" || role === "input";
 
 // Continues with the FMU whose bodies can be pulled, until the next start. It is slower than the FMU as shipped.
 function switchToPulled() {
   if (active !== shipped) return;
   const variables = description.variables.map((variable, index) => ({ ...variable, reference: pulls.references[index] }));
   pulled ||= new Variant(wasmOf(true), { ...description, guid: pulls.guid, variables }, shipped.shown);
-  while (pulled.fmus.length < shipped.fmus.length) pulled.addFmu();
-  pulled.fmus.length = shipped.fmus.length;
+  const count = ghostKind === "linear" ? 1 : shipped.fmus.length;
+  while (pulled.fmus.length < count) pulled.addFmu();
+  pulled.fmus.length = count;
   pulled.fmus.forEach((fmu, i) => fmu.start([...values[i], ...shipped.statesOf(shipped.fmus[i])], time));
   shipped.forgetSavedStates();
   active = pulled;
@@ -183,11 +201,12 @@ const commands = {
   set({ index, value }) {
     const variable = description.variables[index], isLater = variable.role === "start" || variable.isFixed;
     const { fmus, previous } = active, earlier = fmus.map((_, i) => values[i].get(index) ?? variable.start);
-    fmus.forEach((_, i) => values[i].set(index, value));
+    const running = fmus.filter((_, i) => isFor(i, variable));
+    running.forEach((fmu) => values[fmus.indexOf(fmu)].set(index, value));
     if (isLater) return;
     fmus.forEach((fmu, i) => (previous[i] = fmu.save(previous[i])));
     try {
-      for (const fmu of fmus) fmu.set(index, value);
+      for (const fmu of running) fmu.set(index, value);
       sample(); // the FMU may reject the value only when it is evaluated
       post("accepted", { about: index });
     } catch (problem) {
@@ -203,24 +222,35 @@ const commands = {
   reset({ set = [] }) {
     for (const [index, value] of set) values[0].set(index, value);
     try {
+      post("accepted");
       restart();
       postPresent(true);
-      post("accepted");
     } catch (problem) {
       pause();
       reportError(problem);
     }
   },
-  ghost({ differences }) {
-    if (!differences) {
-      ghost = shipped.fmus.splice(1)[0];
-      commands.reset({});
-      return;
-    }
+  // Restarts with a second run of a kind: "none", "near" with different settings, "kept" with the present settings, or "linear".
+  ghost({ kind, differences }) {
+    ghostKind = kind;
     values[1] = new Map([...values[0], ...differences]);
-    if (shipped.fmus.length === 1 && ghost) shipped.fmus.push(ghost);
-    else if (shipped.fmus.length === 1) shipped.addFmu();
+    shipped.fmus.length = 1;
+    if (kind === "linear") shipped.fmus.push((linearGhost ??= new LinearMotion(new Fmu(shipped.wasm, description), description)));
+    else if (kind !== "none") shipped.fmus.push((exactGhost ??= new Fmu(shipped.wasm, description)));
     commands.reset({});
+  },
+  // Finds an equilibrium near the present state, and the linearization there.
+  linearize() {
+    try {
+      linearizer ??= new Fmu(shipped.wasm, description);
+      const point = new Point(linearizer, description, [...values[0]], time), { variables } = active.description;
+      const states = active.fmus[0].read(point.indices.map((index) => variables[index].reference));
+      const model = linearizationAt(point, equilibriumNear(point, states)), eigenvalues = eigenvaluesOf(model.A);
+      post("linearized", { model, eigenvalues, stability: stabilityOf(model.A, eigenvalues), indices: point.indices });
+    } catch (problem) {
+      if (!(problem instanceof FmuError)) throw problem;
+      post("linearized", { problem: problem.message });
+    }
   },
   // pointer: its position, the grasped point in the body's frame, and the damping time; a stiffness of 0 releases the body.
   pull({ body, pointer, stiffness }) {

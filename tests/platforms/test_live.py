@@ -379,7 +379,7 @@ def test_a_video(browser, page_file, tmp_path):
 def test_a_ghost(browser, page_file):
     """A second run starts 1e-9 away from the first; parameters are set in both."""
     with opened(browser, page_file("DoublePendulum")) as page:
-        page.click("#ghost")
+        page.select_option("#ghost", "near")
         page.wait_for_function("live.history.runs === 2")
         first, second = page.evaluate("live.history.samples[0].map(run => [...run])")
         place = page.evaluate("live.names.indexOf('theta1')")
@@ -388,7 +388,7 @@ def test_a_ghost(browser, page_file):
         page.get_by_role("spinbutton", name="g", exact=True).press("Enter")
         place = page.evaluate("live.names.indexOf('potentialEnergy')")
         page.wait_for_function(f"live.history.samples[0][1][{place}] < 10 && live.history.samples[0][0][{place}] < 10")
-        page.click("#ghost")
+        page.select_option("#ghost", "none")
         page.wait_for_function("live.history.runs === 1")
 
 
