@@ -205,6 +205,9 @@ static void write_state_space(const struct Derivation *derivation) {
                        ? "The accelerations and λ solve the equations of motion together with the second time "
                          "derivatives of the constraints; they are computed numerically in each evaluation."
                        : "The accelerations solve M q″ = Q - h; they are computed numerically in each evaluation.");
+  page_paragraph(derivation->page,
+                 "An equilibrium near the start, with A, B, C, D and eigenvalues there as numbers, is a "
+                 "section of the live page, and comes from: lagrange-fmu show FILE --linear");
 }
 
 static bool conserves_energy(const struct Page *page) {

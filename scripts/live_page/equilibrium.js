@@ -56,7 +56,7 @@ function showLinearization({ problem, model, eigenvalues, stability, indices }) 
   const content = $("linearization"), again = buttonOf("Search again", "from the present state", () => send("linearize"));
   live.linearization = { problem, model, eigenvalues, stability };
   if (problem) {
-    content.replaceChildren(Object.assign(paragraphOf(problem), { className: "words" }), again);
+    content.replaceChildren(Object.assign(paragraphOf(problem), { className: "message" }), again);
     return;
   }
   const { A, B, C, D, states, inputs, outputs, at } = model, variables = indices.map((index) => description.variables[index]);

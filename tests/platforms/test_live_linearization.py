@@ -115,4 +115,4 @@ def test_a_ghost_keeps_its_values(browser, page_file):
         page.wait_for_function(f"live.history.samples[0][1][{place}] !== {second}")
         page.select_option("#ghost", "linear")
         page.wait_for_function("document.getElementById('ghost').value === 'none' && live.history.runs === 1")
-        assert "no equilibrium" in page.inner_text("#words")
+        assert "no equilibrium" in page.inner_text("#message")
