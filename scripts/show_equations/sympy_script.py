@@ -45,7 +45,7 @@ if __name__ == "__main__":
 
 
 class Names:
-    """Python's names for the system's, each used once."""
+    """Unique Python names for the names of the system."""
 
     def __init__(self):
         self.of = {"time": "time"}
@@ -95,7 +95,7 @@ def names_in(text):
 
 
 def in_order(definitions):
-    """Return definitions, texts by name, as a list of pairs in which each stands behind those that it uses."""
+    """Return definitions, texts by name, as a list of pairs, each after those that it uses."""
     ordered, done = [], set()
 
     def visit(left):

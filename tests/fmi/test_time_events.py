@@ -153,7 +153,7 @@ def test_the_knots_of_a_table(version):
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("force", CURVES)
 def test_curved_conditions_of_time(version, force):
-    """Conditions that are not affine in time: each zero is a time event, which an importer with fixed steps and no event location meets."""
+    """Conditions that are not affine in time: each zero is a time event, at which importers with fixed steps and no event location stop."""
     instance = opened_for_exchange(version, f"Curved{list(CURVES).index(force)}")
     events = integrate(instance, version, 0.99, sees_indicators=False)
     assert events == pytest.approx(CURVES[force], rel=1e-13)

@@ -1,4 +1,4 @@
-"""fmu/howto: every example builds and moves by its closed form, every number is that form's, and commands name what exists."""
+"""fmu/howto: every example builds and moves as its closed form says, every number agrees with that form, and commands exist."""
 
 import re
 import zipfile
@@ -98,7 +98,7 @@ def hanging_platform(t):
 
 
 def filling(step):
-    """Levels from 0 to 5 s where each FMU takes the outputs of the step before."""
+    """Levels from 0 to 5 s where each FMU uses the outputs of the previous step."""
     levels = [0.0, 2 * step]
     while len(levels) <= round(5 / step):
         levels.append(levels[-1] + 2 * step * (1 - levels[-2]))

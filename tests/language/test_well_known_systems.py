@@ -108,12 +108,12 @@ def switched(mode_at, state, stop, names):
 
 
 def later(end, begin, sign=1.0, margin=1e-9):
-    """The end of a mode that begins at a zero of it: shifted at first, so that this zero is not found again."""
+    """Events of a mode whose function is 0 at the start: it is shifted at first, so that this zero is not found again."""
     return lambda t, x: sign * end(t, x) + (margin if t < begin + 1e-6 else 0.0)
 
 
 def clutches():
-    """At rest a clutch sticks or slides as its limits, and the accelerations of the others, allow; all combinations are tried."""
+    """At rest each clutch sticks or slides, consistent with its limits and the accelerations of the others; all combinations are tried."""
     relative = np.eye(4)[:3] - np.eye(4)[1:]
 
     def limits(t):
@@ -148,7 +148,7 @@ def clutches():
 
 
 def gear():
-    """With the force T of the teeth, J1 n b'' = tau - T - sign(b') k T and J2 b'' = n T - load, where k is that loss which is not negative."""
+    """With the force T of the teeth, J1 n b'' = tau - T - sign(b') k T and J2 b'' = n T - load, where k is the loss that is not negative."""
     torque, load = lambda t: 10 * np.sin(10 * np.pi * t), lambda t: 50 * t
     loss = {1: (0.25, -0.4), -1: (0.4, -0.25)}
 

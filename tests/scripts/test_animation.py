@@ -177,7 +177,7 @@ def page_of_run(folder, name, start=None, **options):
 
 def test_the_view_follows(browser, tmp_path):
     """
-    The plate slides across the plane by many times its own length, and stays at the height of the view's middle; with "Follow" off it leaves it. The four-bar
+    The plate slides across the plane by many times its own length, and stays at the height of the view's middle; with "Follow" off it leaves the view. The four-bar
     linkage stays where it is, and so does its view.
     """
     where = "() => { const { scene } = live, [x, y] = scene.pixels(scene.objects[0].position.setFromMatrixPosition(scene.objects[0].matrix)); return [x / scene.container.clientWidth, y / scene.container.clientHeight]; }"  # fmt: skip
@@ -197,7 +197,7 @@ def test_the_view_follows(browser, tmp_path):
 
 
 def test_values_of_arrows_and_legends(browser, tmp_path):
-    """A pendulum in x and y: velocity l*omega and tension at the bob have their values. The energy, which is 0 but for rounding, is 0."""
+    """A pendulum in x and y: velocity l*omega and tension at the bob have their values. The energy, which is 0 within rounding, is shown as 0."""
     values, file = page_of_run(tmp_path, "PendulumCartesian", stop_time=2.0)
     with opened(browser, file) as page:
         paused(page)

@@ -88,7 +88,7 @@ def test_unusable_data(lagrange_fmu, data, words, why):  # noqa: F811
 
 
 def test_dicts_and_data_frames(lagrange_fmu):  # noqa: F811
-    """A dict of arrays in any order, and what has columns as a DataFrame, are the same data as a structured array."""
+    """A dict of arrays in any order, or an object with columns such as a DataFrame, gives the same data as a structured array."""
     data = measured(np.random.default_rng(6), TRUTH)[::4]
 
     class Frame(dict):

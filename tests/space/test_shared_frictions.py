@@ -59,7 +59,7 @@ PRESSING = np.array([1, -1]) * LEAN / 2 + M * G * np.cos(SLOPE) / 2
 
 
 def left_along(mu):
-    """Capacity of the two cones along the axis, beside the friction needed for rolling, minus the friction needed along the axis."""
+    """Capacity of the two cones along the axis that rolling leaves, minus the friction needed along the axis."""
     return np.sqrt(np.maximum((mu * PRESSING) ** 2 - ROLLING**2 / 4, 0)).sum() - ALONG
 
 
@@ -135,7 +135,7 @@ def creeping_box(mu, turn, height, end, creep):
 
 @pytest.mark.parametrize("mu, slides, error", [(0.3, True, 4e-5), (0.4, False, 2e-6)])
 def test_box_tips(mu, slides, error):
-    """Tipping on an edge oblique to the slope; with little friction it starts to slip on the way. Creep errs by `error`."""
+    """Tipping on an edge oblique to the slope; with little friction it starts to slip on the way. `error` is that of the reference with creep."""
     turn, end = Rotation.from_euler("xz", [60, 20], degrees=True), 0.12
     height = np.abs(turn.as_matrix()[2]) @ HALF
     instance = at_rest("TippingBox", turn, height, mu)

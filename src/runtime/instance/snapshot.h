@@ -10,7 +10,7 @@ size_t snapshot_size(void);
 /* Writes the instance's state into a block of snapshot_size() bytes. */
 void snapshot_take(const struct Instance *instance, void *block);
 
-/* Returns what is wrong with bytes that claim to be a saved state of this instance; NULL if they are valid. */
+/* Returns the fault of bytes that are not a saved state of this instance; NULL if they are valid. */
 const char *snapshot_fault(const struct Instance *instance, const void *block, size_t size);
 
 /* True if count doubles at any alignment are finite; for solvers that check their parts. */
