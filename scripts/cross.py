@@ -110,7 +110,7 @@ def universal(slices):
     return header.ljust(start, b"\0") + content
 
 
-def words_of_fmu(target, system, fmi, source):
+def compiler_arguments(target, system, fmi, source):
     """
     Return the arguments that compile system.c, the runtime that it includes, and the functions of the version of FMI into one object.
 
@@ -131,7 +131,7 @@ def compile_target(target, system, library, fmi, source, sundials, folder):
         words.append(f"-Wl,-install_name,@rpath/{library}")
     if sundials is not None:
         words += [f"-I{sundials / 'include'}", sundials / target / "libsundials.a"]
-    zig("cc", *words_of_fmu(target, system, fmi, source), *words, "-lm", "-o", output, cache=folder / "cache")
+    zig("cc", *compiler_arguments(target, system, fmi, source), *words, "-lm", "-o", output, cache=folder / "cache")
     return output.read_bytes()
 
 
@@ -142,7 +142,7 @@ def compile_component(target, system, source, folder):
     else:
         from wasm_component.component import ADAPTER, LINK_WORDS, component_of
     fmu, module = folder / "fmu.o", folder / "module.wasm"
-    zig("cc", *words_of_fmu(target, system, 3, source), "-c", "-o", fmu, cache=folder / "cache")
+    zig("cc", *compiler_arguments(target, system, 3, source), "-c", "-o", fmu, cache=folder / "cache")
     zig("cc", "-target", target, *FLAGS, f"-I{source / 'include'}", ADAPTER, fmu, *LINK_WORDS, "-o", module, cache=folder / "cache")
     return component_of(module.read_bytes())
 

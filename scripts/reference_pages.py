@@ -19,7 +19,7 @@ VALUES = {"xs:string": "text", "xs:boolean": "`true` or `false`", "xs:double": "
 # The public functions and classes of the Python package, whose docstrings make a page.
 PYTHON = {"lagrange_fmu": ["simulate", "run", "start", "sweep", "live", "linearize", "equilibrium", "fit", "sensitivities", "gradient", "from_sympy", "words"],
           "lagrange_fmu.building": ["build", "check", "new"], "lagrange_fmu.session": ["Simulation"], "lagrange_fmu.results": ["Result"],
-          "lagrange_fmu.linearization": ["Linearization"], "lagrange_fmu.resting": ["Equilibrium"], "lagrange_fmu.fit_result": ["Fit"],
+          "lagrange_fmu.linearization": ["Linearization"], "lagrange_fmu.equilibria": ["Equilibrium"], "lagrange_fmu.fit_result": ["Fit"],
           "lagrange_fmu.variational": ["Sensitivities"], "lagrange_fmu.adjoint": ["Gradient"]}  # fmt: skip
 
 

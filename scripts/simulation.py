@@ -25,7 +25,7 @@ from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
 from .problem import Problem, Unfinished
 from .signals import signals_of
-from .variables import checked_start, elements, instead, known, names_of, near_file, numbers_by_name, start_values, startable, units_of
+from .variables import checked_start, elements, suggestion, known, names_of, near_file, numbers_by_name, start_values, startable, units_of
 from .whole_files import write_whole
 
 
@@ -111,7 +111,7 @@ def log_into(problems):
     return log
 
 
-def _what_ended(fmu, problems, exception):
+def _failure_message(fmu, problems, exception):
     """Return the message of a failed simulation: the FMU's error messages, or, without any, the failed call."""
     return f"{fmu}: {'; '.join(dict.fromkeys(problems)) or exception}"
 
@@ -119,7 +119,7 @@ def _what_ended(fmu, problems, exception):
 def _check_options(options, allowed):
     for name in options:
         if name not in allowed:
-            raise Problem(f"'{name}' is not an option of this simulation; {instead(name, [*WORDS, *allowed], 'expected one of these')}")
+            raise Problem(f"'{name}' is not an option of this simulation; {suggestion(name, [*WORDS, *allowed], 'expected one of these')}")
 
 
 def settings_of(fmu, settings):
@@ -139,7 +139,7 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
     Raise Problem, or Unfinished if the simulation stops.
     """
     if fmi_type not in TYPES:
-        raise Problem(f"the type '{fmi_type}' is not known; {instead(fmi_type, TYPES, 'expected one of these')}")
+        raise Problem(f"the type '{fmi_type}' is not known; {suggestion(fmi_type, TYPES, 'expected one of these')}")
     description = described(fmu)
     if description.fmiVersion[0] not in "23":
         raise Problem(f"{fmu} is of FMI {description.fmiVersion}; expected an FMU of FMI 2.0 or 3.0")
@@ -170,9 +170,9 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
         else:
             values = exchange(fmu, description, start, signals, recorded, step, begin, stop, **options)
     except FMICallException as problem:
-        raise Problem(_what_ended(fmu, problems, problem)) from None
+        raise Problem(_failure_message(fmu, problems, problem)) from None
     except Interrupted as interrupted:
-        raise Unfinished(_what_ended(fmu, problems, interrupted), motion_with(interrupted.reached)) from None
+        raise Unfinished(_failure_message(fmu, problems, interrupted), motion_with(interrupted.reached)) from None
     for problem in problems:
         print(problem, file=sys.stderr)
     return motion_with(values)

@@ -17,7 +17,7 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 from scripts.ensembles import words
 from scripts.problem import Problem
-from scripts.sweep_words import sweep_words
+from scripts.sweep_arguments import add_sweep_arguments
 from scripts.sweeping import report, sweep
 
 
@@ -49,7 +49,7 @@ def compile_ensemble(source, lanes):
 def main():
     parser = argparse.ArgumentParser(prog="scripts/sweep", description=__doc__)
     parser.add_argument("system", help="name of a system, or an FMU")
-    sweep_words(parser, "build/results/SYSTEM-sweep.parquet")
+    add_sweep_arguments(parser, "build/results/SYSTEM-sweep.parquet")
     arguments = parser.parse_args()
     path = Path(arguments.system)
     path = path if path.suffix == ".fmu" else ROOT / "build" / "fmu" / f"{arguments.system}.fmu"

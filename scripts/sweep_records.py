@@ -7,7 +7,7 @@ import numpy as np
 
 from .problem import Problem
 from .signals import REAL
-from .variables import instead, names_of, nearest
+from .variables import suggestion, names_of, nearest
 
 VALUE, MAXIMUM, MINIMUM, EVENTS, FIRST, EVENTS_OF, FIRST_OF = range(7)  # enum RecordKind of sweep_runs.c
 EXTREMES, COUNTS = {".max": MAXIMUM, ".min": MINIMUM}, {".events": EVENTS_OF, ".first": FIRST_OF}
@@ -43,7 +43,7 @@ def _check_switching(item, name, description):
     """Raise Problem unless the FMU has a contact or friction of this name, and reports its events."""
     switching = [other for v in description.modelVariables for other, _ in [_split(v.name, {".closed": 1, ".sliding": 1})] if other]
     if name not in switching:
-        raise Problem(f"'{name}' of '{item}' is neither a contact nor a friction of {description.modelName}; {instead(name, [COUNTER, *switching])}")
+        raise Problem(f"'{name}' of '{item}' is neither a contact nor a friction of {description.modelName}; {suggestion(name, [COUNTER, *switching])}")
 
 
 def check_log(path, records):

@@ -28,7 +28,7 @@ from .progress import Progress
 from .quantities import number_of
 from .simulation import described
 from .sweep_records import VALUE, check_log, records_of, times_of
-from .variables import settable, units_of, why_not
+from .variables import settable, units_of, unsettable_reason
 from .whole_files import replace
 
 try:
@@ -50,12 +50,12 @@ def known_name(name, description):
         return name
     if name.endswith("0") and name[:-1] in names:
         return name[:-1]
-    what = f"'{name}' has no start value in {description.modelName}{why_not(name, description)}"
+    what = f"'{name}' has no start value in {description.modelName}{unsettable_reason(name, description)}"
     raise Problem(f"{what}; these have one: {', '.join(names)}")
 
 
 def in_unit(name, values, unit):
-    """Return a range or values of sweep_words.py, which may be texts, as numbers in the unit."""
+    """Return a range or values of sweep_arguments.py, which may be texts, as numbers in the unit."""
     if isinstance(values, tuple):
         return (*(number_of(name, end, unit) for end in values[:2]), values[2])
     return [number_of(name, value, unit) for value in values]
@@ -298,7 +298,7 @@ def report(run):
 
 def sweep(path, folder, words, runner, compile_ensemble):
     """
-    Sweep an FMU into a Parquet file, by the arguments of sweep_words.py; return its path.
+    Sweep an FMU into a Parquet file, by the arguments of sweep_arguments.py; return its path.
 
     `runner` is the shared library of sweep_runs.c. compile_ensemble(source, lanes) returns the library of ensembles.py, or None.
     """

@@ -40,7 +40,7 @@ def start_values(description):
     return found
 
 
-def why_not(name, description):
+def unsettable_reason(name, description):
     """Return the end of a message that explains why a variable cannot be set; "" if no explanation is needed."""
     calculated = [v.name for v in description.modelVariables if v.causality == "calculatedParameter"]
     return ", as it follows from other parameters" if name in calculated else ""
@@ -60,7 +60,7 @@ def nearest(word, words):
     return by_lower[found[0]] if found else None
 
 
-def instead(word, words, what="these are"):
+def suggestion(word, words, what="these are"):
     """Return the end of a message: the most similar word, or the list of all words."""
     words = list(words)
     near = nearest(word, words)
@@ -128,7 +128,7 @@ def known(names, among, description, what="is not a variable"):
     """Return the names as a list; raise Problem if one is not in `among`."""
     for name in names:
         if name not in among:
-            raise Problem(f"'{name}' {what} of {description.modelName}{why_not(name, description)}; {instead(name, among)}")
+            raise Problem(f"'{name}' {what} of {description.modelName}{unsettable_reason(name, description)}; {suggestion(name, among)}")
     return list(names)
 
 
@@ -138,7 +138,7 @@ def checked_start(start, description, free=None):
     free = settable(description) if free is None else free
     for name in start:
         if name in variables and name not in free:
-            raise Problem(f"'{name}' of {description.modelName} cannot be set{why_not(name, description)}; these can be: {', '.join(free)}")
+            raise Problem(f"'{name}' of {description.modelName} cannot be set{unsettable_reason(name, description)}; these can be: {', '.join(free)}")
         if name not in free:
-            raise Problem(f"'{name}' is not a variable of {description.modelName}; {instead(name, free, 'these can be')}")
+            raise Problem(f"'{name}' is not a variable of {description.modelName}; {suggestion(name, free, 'these can be')}")
     return numbers_of({name: truth_of(variables[name], value) for name, value in start.items()}, units_of(description))

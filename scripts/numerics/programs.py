@@ -38,7 +38,7 @@ def fastest(run, budget=2.0, repeats=10):
     return best, result
 
 
-def impatient(function, patience=PATIENCE):
+def with_time_limit(function, patience=PATIENCE):
     """Return the function, which raises TimeoutError once `patience` seconds have passed from now."""
     deadline = time.perf_counter() + patience
 

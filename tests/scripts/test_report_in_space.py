@@ -47,15 +47,15 @@ def test_links_move_with_their_joints(problem):
     axis at most.
     """
     links = problem.model.links
-    at = lambda link, point: np.add(link.velocity, np.cross(link.turning, np.subtract(point, link.centre)))
+    at = lambda link, point: np.add(link.velocity, np.cross(link.angular_velocity, np.subtract(point, link.centre)))
     for link in links:
         above = links[link.above] if link.above is not None else None
-        turning = np.subtract(link.turning, above.turning if above else np.zeros(3))
+        angular_velocity = np.subtract(link.angular_velocity, above.angular_velocity if above else np.zeros(3))
         if link.joint in ("hinge", "ball"):
             assert at(link, link.point) == pytest.approx(at(above, link.point) if above else np.zeros(3), abs=1e-12)
         if link.joint in ("hinge", "slide"):
             assert np.linalg.norm(link.axis) == pytest.approx(1, rel=1e-15)
-            assert np.cross(turning, link.axis) == pytest.approx(np.zeros(3), abs=1e-12)
+            assert np.cross(angular_velocity, link.axis) == pytest.approx(np.zeros(3), abs=1e-12)
 
 
 def test_springs_of_the_governor():

@@ -18,7 +18,7 @@ def assemble(folder):
     shutil.copytree(SCRIPTS / "show_equations", package / "show_equations", ignore=shutil.ignore_patterns("__pycache__"))
     (package / "bin").mkdir()
     (package / "runtime" / "scripts").mkdir(parents=True)
-    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("co_simulation", "ensembles", "exchange", "feedback", "named_values", "picture", "problem", "progress", "quantities", "signals", "simulation", "sweep_records", "sweep_words", "sweep_worker", "sweeping", "variables", "whole_files")}
+    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("co_simulation", "ensembles", "exchange", "feedback", "named_values", "picture", "problem", "progress", "quantities", "signals", "simulation", "sweep_records", "sweep_arguments", "sweep_worker", "sweeping", "variables", "whole_files")}
     files |= {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC, "runtime/scripts/cross.py": SCRIPTS / "cross.py"}
     files |= {"runtime/scripts/one_file.py": SCRIPTS / "one_file.py"}
     files |= {"runtime/scripts/sweep_runs.c": SCRIPTS / "sweep_runs.c"}

@@ -29,7 +29,7 @@ class Exudyn(mechanism_peers.Exudyn):
         for link in self.model.links:
             inertia = RigidBodyInertia(mass=link.mass, inertiaTensor=link.inertia)
             self.bodies.append(self.system.CreateRigidBody(referencePosition=list(link.centre), initialVelocity=list(link.velocity),
-                                                           initialAngularVelocity=list(link.turning), inertia=inertia,
+                                                           initialAngularVelocity=list(link.angular_velocity), inertia=inertia,
                                                            gravity=list(self.model.gravity), returnDict=True))  # fmt: skip
         for i, link in enumerate(self.model.links):
             if link.joint != "free":
@@ -55,8 +55,8 @@ class Exudyn(mechanism_peers.Exudyn):
 
     def recorded(self, points):
         stored = [[self.system.GetSensorStoredData(sensor)[-points:, 1:] for sensor in of_body] for of_body in self.sensors]
-        centres, turns, velocities, turnings = (np.stack([of_body[i] for of_body in stored], axis=1) for i in range(4))
-        return Motion(centres, turns.reshape(*turns.shape[:2], 3, 3), velocities, turnings)
+        centres, rotations, velocities, angular_velocities = (np.stack([of_body[i] for of_body in stored], axis=1) for i in range(4))
+        return Motion(centres, rotations.reshape(*rotations.shape[:2], 3, 3), velocities, angular_velocities)
 
     def measured(self, points):
         motion = self.recorded(points)
@@ -73,9 +73,9 @@ class MuJoCo(mechanism_peers.MuJoCo):
         self.library.mj_resetData(self.mujoco, self.data)
         for link, number in zip(self.model.links, self.numbers):
             first = self.mujoco.body_dofadr[number]
-            above = np.zeros(3) if link.above is GROUND else self.model.links[link.above].turning
-            rate = {"hinge": [np.dot(link.axis, np.subtract(link.turning, above))], "slide": [0.0], "ball": link.turning,
-                    "free": [*link.velocity, *link.turning]}[link.joint]  # fmt: skip
+            above = np.zeros(3) if link.above is GROUND else self.model.links[link.above].angular_velocity
+            rate = {"hinge": [np.dot(link.axis, np.subtract(link.angular_velocity, above))], "slide": [0.0], "ball": link.angular_velocity,
+                    "free": [*link.velocity, *link.angular_velocity]}[link.joint]  # fmt: skip
             self.data.qvel[first : first + len(rate)] = rate
 
     def state_of(self, data):

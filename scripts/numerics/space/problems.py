@@ -25,7 +25,7 @@ class Link:
     point: tuple = (0.0, 0.0, 0.0)  # position of the joint
     axis: tuple = (0.0, 0.0, 1.0)  # of the joint
     velocity: tuple = (0.0, 0.0, 0.0)  # of the centre of mass, in m/s
-    turning: tuple = (0.0, 0.0, 0.0)  # angular velocity, in rad/s
+    angular_velocity: tuple = (0.0, 0.0, 0.0)  # in rad/s
     motor: float = 0.0  # inertia of the drive, reduced to the joint, in kg m2
     friction: float = 0.0  # viscous, in N m s/rad
 
@@ -57,7 +57,7 @@ class Motion(NamedTuple):
     centres: np.ndarray  # centres of mass
     axes: np.ndarray  # rotation matrices, the identity at the start
     velocities: np.ndarray  # of the centres of mass
-    turnings: np.ndarray  # angular velocities, in the links' axes
+    angular_velocities: np.ndarray  # in the links' axes
 
 
 @dataclass
@@ -73,14 +73,14 @@ class Spatial:
         """Return the energies of a Motion, without those of springs and drives."""
         energies = 0.0
         for i, link in enumerate(self.links):
-            velocity, turning = motion.velocities[:, i], motion.turnings[:, i]
+            velocity, angular_velocity = motion.velocities[:, i], motion.angular_velocities[:, i]
             energies = energies + link.mass * (np.sum(velocity**2, axis=1) / 2 - motion.centres[:, i] @ self.gravity)
-            energies = energies + np.sum(turning @ link.inertia * turning, axis=1) / 2
+            energies = energies + np.sum(angular_velocity @ link.inertia * angular_velocity, axis=1) / 2
         return energies
 
     def start(self):
         rows = lambda name: np.array([[getattr(link, name) for link in self.links]], float)
-        return Motion(rows("centre"), np.array([[np.eye(3)] * len(self.links)]), rows("velocity"), rows("turning"))
+        return Motion(rows("centre"), np.array([[np.eye(3)] * len(self.links)]), rows("velocity"), rows("angular_velocity"))
 
     def start_energy(self):
         return float(self.energy(self.start())[0])
@@ -115,8 +115,8 @@ def governor():
     L, w, e, h, ball, s = (value[name] for name in ("L", "w", "e", "h", "mBall", "s"))
     arm, slider, rate = value["rho"] * L * w**2, value["rho"] * e**3, value["Omega"]
     spin = np.array([0.0, 0.0, rate])
-    links = [Link(arm, prism(arm, L, w, 2), np.array([0, 0, L / 2]), "hinge", turning=tuple(spin)),
-             Link(slider, np.eye(3) * slider * e**2 / 6, np.array([0, 0, s]), "slide", 0, turning=tuple(spin))]  # fmt: skip
+    links = [Link(arm, prism(arm, L, w, 2), np.array([0, 0, L / 2]), "hinge", angular_velocity=tuple(spin)),
+             Link(slider, np.eye(3) * slider * e**2 / 6, np.array([0, 0, s]), "slide", 0, angular_velocity=tuple(spin))]  # fmt: skip
     springs, alpha = [], value["alpha[1]"]
     for side in (1, -1):
         out = np.array([side * np.cos(alpha), 0.0, -np.sin(alpha)])
@@ -141,7 +141,7 @@ def top():
     value = start_values("HeavyTop")
     axis = top_axis(value["theta"])
     inertia = value["I1"] * np.eye(3) + (value["I3"] - value["I1"]) * np.outer(axis, axis)
-    return Spatial([Link(value["m"], inertia, value["l"] * axis, "ball", turning=tuple(value["vpsi"] * axis))])
+    return Spatial([Link(value["m"], inertia, value["l"] * axis, "ball", angular_velocity=tuple(value["vpsi"] * axis))])
 
 
 def top_nutations(times):
@@ -158,7 +158,7 @@ def nutation(motion):
 def free_body():
     value = start_values("FreeBody")
     inertia = np.diag([value[name] for name in ("I1", "I2", "I3")])
-    return Spatial([Link(value["m"], inertia, np.zeros(3), "free", turning=tuple(value[name] for name in ("w1", "w2", "w3")))], (0.0, 0.0, 0.0))
+    return Spatial([Link(value["m"], inertia, np.zeros(3), "free", angular_velocity=tuple(value[name] for name in ("w1", "w2", "w3")))], (0.0, 0.0, 0.0))
 
 
 def free_velocities(times):
@@ -239,7 +239,7 @@ PROBLEMS = [
               [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], top(), STEPS, from_bodies=nutation),
     Mechanism("FreeBody", "free body that flips, angular velocity", 20.0, "Jacobi's elliptic functions", free_velocities,
               ["body.omegaX", "body.omegaY", "body.omegaZ"], [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], free_body(), STEPS,
-              from_bodies=lambda motion: motion.turnings[:, 0], quick=False),
+              from_bodies=lambda motion: motion.angular_velocities[:, 0], quick=False),
     Mechanism("RobotArm", "robot arm that falls, tip of the tool", 2.0, "Pinocchio with a method of order 8", tips_of_tool, ["tool.x", "tool.y", "tool.z"],
               [("error", 1e-4, "ours"), ("error", 1e-8, "ours")], robot_arm(), STEPS, from_bodies=tip_of_tool, programs=("MuJoCo",), quick=False),
 ]  # fmt: skip

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 from numerics.mechanisms.peers import Exudyn
 from numerics.mechanisms.problems import GROUND, Body, Joint, Planar
-from numerics.programs import impatient, silence
+from numerics.programs import with_time_limit, silence
 
 PATIENCE = 5.0  # s, after which a run is stopped
 STEPS = [100, 300, 1000, 3000, 10000, 30000, 100000, 300000]  # of exudyn, whose implicit methods have no error control
@@ -22,7 +22,7 @@ def scipy_method(method):
     def run(problem, tolerance):
         definition, values = problem.definition, problem.all_values
         inputs, parameters = [values[u.name] for u in definition.inputs], [values[p.name] for p in definition.parameters]
-        right_side = impatient(definition.right_side(lambda t: inputs, parameters), PATIENCE)
+        right_side = with_time_limit(definition.right_side(lambda t: inputs, parameters), PATIENCE)
         start, begin = [values[state] for state in problem.states], time.process_time()
         solution = solve_ivp(right_side, (0, problem.end), start, method=method, rtol=tolerance, atol=tolerance, t_eval=[problem.end])
         return (time.process_time() - begin, solution.y[:, -1]) if solution.success else None

@@ -5,7 +5,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from numerics.driver import POINTS, step
-from numerics.programs import FmpyCvode, impatient, timed
+from numerics.programs import FmpyCvode, with_time_limit, timed
 
 ROUND = 0.02  # s of one program in one round
 
@@ -67,7 +67,7 @@ class Scipy(Timed):
 
     def simulate(self):
         problem, times, begin, state = self.problem, self.problem.times, 0.0, self.problem.start
-        name, rows, check = next(iter(self.phases)), [], impatient(lambda: None, self.patience)
+        name, rows, check = next(iter(self.phases)), [], with_time_limit(lambda: None, self.patience)
         while begin < problem.end:
             check()
             phase = self.phases[name]
@@ -128,11 +128,11 @@ class Heyoka(Timed):
 
     def simulate(self):
         self.begin()
-        self.go_to(self.problem.end, impatient(lambda: None, self.patience))
+        self.go_to(self.problem.end, with_time_limit(lambda: None, self.patience))
 
     def record(self):
         self.begin()
-        check, rows = impatient(lambda: None, self.patience), []
+        check, rows = with_time_limit(lambda: None, self.patience), []
         for time in self.problem.times:
             self.go_to(time, check)
             rows.append([self.now.state[0]])

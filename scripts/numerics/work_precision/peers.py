@@ -7,7 +7,7 @@ import sympy
 from scipy.integrate import solve_ivp
 
 from numerics.driver import POINTS
-from numerics.programs import FmpyCvode, fastest, impatient
+from numerics.programs import FmpyCvode, fastest, with_time_limit
 from numerics.work_precision.scenarios import SCENARIOS, states_of, times_of, values_of
 from systems_in_sympy import system
 
@@ -15,7 +15,7 @@ from systems_in_sympy import system
 def scipy_method(method):
     def run(name, tolerance):
         definition, values = system(name), values_of(name)
-        right_side = impatient(definition.right_side(lambda t: [values[u.name] for u in definition.inputs],
+        right_side = with_time_limit(definition.right_side(lambda t: [values[u.name] for u in definition.inputs],
                                                      [values[p.name] for p in definition.parameters]))  # fmt: skip
         start = [values[s] for s in states_of(name)]
         times = times_of(name)

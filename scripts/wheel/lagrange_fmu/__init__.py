@@ -18,14 +18,14 @@ from typing import TYPE_CHECKING, Any
 
 from .calls import checked
 from .problem import Problem
-from .variables import instead, names_of, numbers_by_name, pairs_by_name
+from .variables import suggestion, names_of, numbers_by_name, pairs_by_name
 
 if TYPE_CHECKING:
     import numpy as np
 
     from .adjoint import Gradient
     from .building import build, check, new
-    from .resting import Equilibrium
+    from .equilibria import Equilibrium
     from .fit_result import Fit
     from .linearization import Linearization
     from .results import Result
@@ -213,7 +213,7 @@ def equilibrium(
     >>> found = lagrange_fmu.equilibrium("arm.xml", {"elbow": 0.5}, hold={"height": 0.8}, vary=["torque"])
     >>> found.point["torque"], found.stability
     """
-    from .resting import equilibrium
+    from .equilibria import equilibrium
 
     return equilibrium(system, numbers_by_name(guess, "guess"), numbers_by_name(hold, "hold"), names_of(vary, "vary"))
 
@@ -629,5 +629,5 @@ def from_sympy(method: Any, path: str | PathLike[str], parameters: Mapping[Any, 
 
     for name in options:
         if name not in OPTIONS:
-            raise Problem(f"'{name}' is not an option of from_sympy; {instead(name, OPTIONS, 'expected one of these')}")
+            raise Problem(f"'{name}' is not an option of from_sympy; {suggestion(name, OPTIONS, 'expected one of these')}")
     return from_sympy(method, path, parameters, **options)

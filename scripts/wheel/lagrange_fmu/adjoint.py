@@ -51,114 +51,114 @@ class Jump:
     by_acting: np.ndarray  # parameters x n
 
 
-class Trail(Motion):
+class RecordedMotion(Motion):
     """A motion that records its phases and jumps, so that the adjoint equation can follow it back."""
 
     def __init__(self, point, of, acting, tolerance):
         super().__init__(point, of, [], tolerance)
-        self.known_acting, self.trail = acting, []
+        self.known_acting, self.parts = acting, []
 
     def begin_phase(self, time):
-        self.trail.append(Phase(self.model.getFMUState(), [time], []))
+        self.parts.append(Phase(self.model.getFMUState(), [time], []))
 
     def add_step(self, end, dense):
-        phase = self.trail[-1]
+        phase = self.parts[-1]
         if end > phase.times[-1]:
             phase.times.append(end)
             phase.steps.append(dense)
 
-    def pass_over(self, event, dense, before, inputs):
+    def handle_event(self, event, dense, before, inputs):
         count, more = len(self.state_references), len(self.known_acting)
         slopes = np.vstack([np.eye(count), np.zeros((more, count))])
         acting = [*([] for _ in range(count)), *([reference] for reference in self.known_acting)]
-        state, found = self.saltation(event, dense, before, inputs).pass_over(slopes, acting)
-        self.trail.append(Jump(found[:count], found[count:]))
+        state, found = self.saltation(event, dense, before, inputs).handle_event(slopes, acting)
+        self.parts.append(Jump(found[:count], found[count:]))
         return state
 
-    def forget(self):
+    def free(self):
         """Free the FMU states of all phases."""
-        for part in self.trail:
+        for part in self.parts:
             if isinstance(part, Phase):
                 self.model.freeFMUState(part.saved)
 
 
-class WayBack:
+class AdjointMotion:
     """
-    The adjoint equation along a Trail.
+    The adjoint equation along a RecordedMotion.
 
-    The vector `now` has the n adjoint variables, the derivatives by the parameters accumulated so far, and the value of the integral.
+    The vector `adjoint` has the n adjoint variables, the derivatives by the parameters accumulated so far, and the value of the integral.
     """
 
-    def __init__(self, trail, running, inputs):
+    def __init__(self, motion, running, inputs):
         """Begin at the end of the trail; `running` lists the references of the integrated variables."""
-        self.trail, self.model, self.running, self.inputs = trail, trail.model, list(running), inputs
-        self.state_count = len(trail.state_references)
-        self.knowns = [*trail.state_references, *trail.known_acting]
-        self.now = np.zeros(len(self.knowns) + 1)
+        self.motion, self.model, self.running, self.inputs = motion, motion.model, list(running), inputs
+        self.state_count = len(motion.state_references)
+        self.knowns = [*motion.state_references, *motion.known_acting]
+        self.adjoint = np.zeros(len(self.knowns) + 1)
         self.step = None
 
-    def rates(self, time, now, states):
+    def rates(self, time, adjoint, states):
         """Return the right-hand side of the adjoint equation; states(time) is the motion."""
-        self.trail.place(time, states(time), self.inputs)
-        found = self.back([*self.trail.rate_references, *self.running], [*now[: self.state_count], *(1.0 for _ in self.running)])
+        self.motion.set_point(time, states(time), self.inputs)
+        found = self.weighted_derivatives([*self.motion.rate_references, *self.running], [*adjoint[: self.state_count], *(1.0 for _ in self.running)])
         return -np.append(found, sum(self.model.getReal(self.running)) if self.running else 0.0)
 
     def jacobian(self, time, states):
-        """Return the derivative of rates() by the vector `now`."""
-        self.trail.place(time, states(time), self.inputs)
-        found = np.zeros((len(self.now), len(self.now)))
+        """Return the derivative of rates() by the vector `adjoint`."""
+        self.motion.set_point(time, states(time), self.inputs)
+        found = np.zeros((len(self.adjoint), len(self.adjoint)))
         for i, seed in enumerate(np.eye(self.state_count)):
-            found[:-1, i] = -self.back(self.trail.rate_references, seed)
+            found[:-1, i] = -self.weighted_derivatives(self.motion.rate_references, seed)
         return found
 
-    def go(self, begin, end, states):
+    def integrate(self, begin, end, states):
         """Integrate backwards from `end` to `begin`."""
         if not begin < end:
             return
         first = None if self.step is None else min(self.step, end - begin)
         span, what = (end, begin), "the motion cannot be followed back"
-        steps = Steps(lambda time, now: self.rates(time, now, states), lambda time, now: self.jacobian(time, states), span, self.now, self.trail.tolerance, what, first)
+        steps = Steps(lambda time, adjoint: self.rates(time, adjoint, states), lambda time, adjoint: self.jacobian(time, states), span, self.adjoint, self.motion.tolerance, what, first)
         sizes = []
         while steps.take():
             sizes.append(steps.solver.step_size)
-        self.now = steps.solver.y
+        self.adjoint = steps.solver.y
         self.step = sizes[-2] if len(sizes) > 1 else max(self.step or 0.0, sizes[-1])  # the last step is shortened to end at `begin`
 
-    def add(self, time, weights, states):
+    def add_weights(self, time, weights, states):
         """Add the jump of the adjoint variables by the variables that are read at this time, times their weights."""
-        self.trail.place(time, states(time), self.inputs)
-        self.now[:-1] += self.back(self.trail.read_references, weights)
+        self.motion.set_point(time, states(time), self.inputs)
+        self.adjoint[:-1] += self.weighted_derivatives(self.motion.read_references, weights)
 
-    def back(self, unknowns, weights):
+    def weighted_derivatives(self, unknowns, weights):
         """Return the derivatives of the weighted sum of the unknowns by each known."""
-        hidden, pairs = self.trail.hidden, list(zip(unknowns, weights))
-        asked = [pair for pair in pairs if pair[0] not in hidden]
-        found = self.model.adjoint([unknown for unknown, _ in asked], self.knowns, [weight for _, weight in asked]) if asked else np.zeros(len(self.knowns))
+        hidden, pairs = self.motion.hidden, list(zip(unknowns, weights))
+        visible = [pair for pair in pairs if pair[0] not in hidden]
+        found = self.model.adjoint([unknown for unknown, _ in visible], self.knowns, [weight for _, weight in visible]) if visible else np.zeros(len(self.knowns))
         for reference, weight in pairs:
             if reference in hidden:
                 found[hidden[reference]] += weight
         return found
 
-    def along(self, phase, readings):
+    def pass_phase(self, phase, readings):
         """Integrate backwards through a phase; pop its readings, (time, weights), from the end of the list `readings`."""
         states, end, begin = phase.states(), phase.times[-1], phase.times[0]
         self.model.setFMUState(phase.saved)
         while readings and readings[-1][0] > begin:
             time, weights = readings.pop()
-            self.go(time, end, states)
-            self.add(time, weights, states)
+            self.integrate(time, end, states)
+            self.add_weights(time, weights, states)
             end = time
-        self.go(begin, end, states)
+        self.integrate(begin, end, states)
 
-    def over(self, jump):
+    def pass_jump(self, jump):
         """Apply the jump of an event to the adjoint variables and the derivatives."""
-        by_state = self.now[: self.state_count].copy()
-        self.now[: self.state_count] = jump.by_states @ by_state
-        self.now[self.state_count : -1] += jump.by_acting @ by_state
+        by_state = self.adjoint[: self.state_count].copy()
+        self.adjoint[: self.state_count] = jump.by_states @ by_state
+        self.adjoint[self.state_count : -1] += jump.by_acting @ by_state
 
 
 @dataclass(frozen=True)
-class Aim:
+class Objective:
     """The number to differentiate: a function of the values at n times, or the integral of the values."""
 
     of: list  # names of the variables that it depends on
@@ -170,12 +170,12 @@ class Aim:
     kinks: object = ()  # times, in s, at which an input changes its slope
 
 
-def _aim_at_end(name, stop_time, integral):
-    return Aim([name], np.array([0.0, stop_time]), lambda values: values[-1, 0], lambda values: np.array([[0.0], [1.0]]), integral)
+def _objective_at_end(name, stop_time, integral):
+    return Objective([name], np.array([0.0, stop_time]), lambda values: values[-1, 0], lambda values: np.array([[0.0], [1.0]]), integral)
 
 
-def _aim_at_data(experiment):
-    return Aim(
+def _objective_of_data(experiment):
+    return Objective(
         experiment.measured,
         experiment.data["time"],
         lambda values: (experiment.off(values) ** 2).sum(),
@@ -185,47 +185,47 @@ def _aim_at_data(experiment):
     )
 
 
-def _aim(point, of, data, stop_time, integral, noise):
+def _objective(point, of, data, stop_time, integral, noise):
     if (of is None) == (data is None):
         raise Problem("expected the name of a variable to differentiate, or data whose squared differences are differentiated")
     if data is not None:
         experiment = Experiment(data, point, noise)
         check_noise(noise, [experiment])
-        return _aim_at_data(experiment)
+        return _objective_of_data(experiment)
     if stop_time is None or not 0 < stop_time < np.inf:
         raise Problem(f"the stop time is {stop_time}; expected one later than 0 s")
-    return _aim_at_end(of, stop_time, integral)
+    return _objective_at_end(of, stop_time, integral)
 
 
 def gradient(system, of, by, stop_time, data, integral, noise, start_values, tolerance):
     """See lagrange_fmu.gradient."""
     check_tolerance(tolerance)
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
-        aim = _aim(point, of, data, stop_time, integral, numbers_of(noise, point.units))
-        check_names(point, aim.of, by)
+        objective = _objective(point, of, data, stop_time, integral, numbers_of(noise, point.units))
+        check_names(point, objective.of, by)
         acting = acting_of(point, by)
         start, slopes = start_slopes(point, by, {})
-        trail = Trail(point, aim.of, [reference for references in acting for reference in references], tolerance)
-        values, _ = trail.over(aim.times, {}, aim.inputs, aim.kinks)
-        found = _back(trail, aim, values)
-        trail.forget()
+        motion = RecordedMotion(point, objective.of, [reference for references in acting for reference in references], tolerance)
+        values, _ = motion.over(objective.times, {}, objective.inputs, objective.kinks)
+        found = _integrate_backwards(motion, objective, values)
+        motion.free()
     count = len(start)
     derivatives = slopes @ found[:count]
     derivatives[[bool(references) for references in acting]] += found[count:-1]
-    return Gradient(float(found[-1] if aim.is_integral else aim.value(values)), dict(zip(by, derivatives.tolist())))
+    return Gradient(float(found[-1] if objective.is_integral else objective.value(values)), dict(zip(by, derivatives.tolist())))
 
 
-def _back(trail, aim, values):
-    weights = np.zeros_like(values) if aim.is_integral else aim.weights(values)
+def _integrate_backwards(motion, objective, values):
+    weights = np.zeros_like(values) if objective.is_integral else objective.weights(values)
     size = np.max(abs(weights)) or 1.0  # scaling to 1 makes the tolerance relative to the weights
-    readings = [(time, row) for time, row in zip(aim.times, weights / size) if row.any()]
-    way = WayBack(trail, trail.read_references if aim.is_integral else [], aim.inputs)
-    for part in reversed(trail.trail):
+    readings = [(time, row) for time, row in zip(objective.times, weights / size) if row.any()]
+    backwards = AdjointMotion(motion, motion.read_references if objective.is_integral else [], objective.inputs)
+    for part in reversed(motion.parts):
         if isinstance(part, Jump):
-            way.over(part)
+            backwards.pass_jump(part)
         else:
-            way.along(part, readings)
+            backwards.pass_phase(part, readings)
     if readings:
-        first = trail.trail[0]
-        way.add(*readings.pop(), first.states())
-    return way.now * size
+        first = motion.parts[0]
+        backwards.add_weights(*readings.pop(), first.states())
+    return backwards.adjoint * size

@@ -21,7 +21,7 @@ from .packing import pack
 from .problem import Problem
 from .runtime.scripts.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
 from .runtime.scripts.one_file import one_file
-from .variables import instead, near_file
+from .variables import suggestion, near_file
 from .whole_files import write_whole
 
 HERE = Path(__file__).resolve().parent
@@ -125,7 +125,7 @@ def take_or_compile(key, folder, what, compile_library):
     """
     if caching.take(key, folder):
         return
-    caching.keep_what_zig_compiles()
+    caching.share_zig_cache()
     try:
         compile_library()
     except Failure as failure:
@@ -233,7 +233,7 @@ def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
     platforms = [platforms] if isinstance(platforms, str) else list(dict.fromkeys(platforms or [NATIVE]))
     for name in platforms:
         if name not in PLATFORM_NAMES:
-            raise Problem(f"the platform '{name}' is not known; {instead(name, PLATFORM_NAMES, 'expected one of these')}")
+            raise Problem(f"the platform '{name}' is not known; {suggestion(name, PLATFORM_NAMES, 'expected one of these')}")
     if fmi not in (2, 3):
         raise Problem(f"the version {fmi} of FMI is not known; expected 2 or 3")
     with tempfile.TemporaryDirectory() as scratch:
@@ -274,7 +274,7 @@ def new(name: str, template: str = "pendulum") -> Path:
     >>> path = lagrange_fmu.new("MySystem", "cart")
     """
     if template not in TEMPLATES:
-        raise Problem(f"the template '{template}' is not known; {instead(template, TEMPLATES, 'expected one of these')}")
+        raise Problem(f"the template '{template}' is not known; {suggestion(template, TEMPLATES, 'expected one of these')}")
     if not re.fullmatch("[A-Za-z_][A-Za-z0-9_]{0,99}", name):
         raise Problem(f"'{name}' cannot name a system; expected letters, digits and _, at most 100, and no digit at the beginning")
     path = Path(f"{name}.xml")

@@ -45,7 +45,7 @@ def folder():
     return path
 
 
-def keep_what_zig_compiles():
+def share_zig_cache():
     """Let zig keep its cache, with the platforms' C libraries, in this cache, too."""
     os.environ.setdefault("ZIG_GLOBAL_CACHE_DIR", str(folder() / "zig"))
 

@@ -5,15 +5,15 @@ import inspect
 import os
 
 from .problem import Problem
-from .variables import instead
+from .variables import suggestion
 
 
-def _what_is_wrong(function, signature, words, error):
+def _argument_message(function, signature, words, error):
     unknown = [word for word in words if word not in signature.parameters]
     if not unknown:
         return f"{function.__name__}: {error}; expected {function.__name__}{signature.replace(return_annotation=inspect.Signature.empty)}"
     known = [word for word in signature.parameters if word != "self"]
-    return f"'{unknown[0]}' is not an argument of {function.__name__}; {instead(unknown[0], known, 'expected one of these')}"
+    return f"'{unknown[0]}' is not an argument of {function.__name__}; {suggestion(unknown[0], known, 'expected one of these')}"
 
 
 def checked(function):
@@ -26,7 +26,7 @@ def checked(function):
         try:
             given = signature.bind(*values, **words).arguments
         except TypeError as error:
-            raise Problem(_what_is_wrong(function, plain, words, error)) from None
+            raise Problem(_argument_message(function, plain, words, error)) from None
         if "system" in given and not isinstance(given["system"], (str, os.PathLike)):
             raise Problem(f"the system is {given['system']!r}; expected the path of a system or of an FMU")
         return function(*values, **words)

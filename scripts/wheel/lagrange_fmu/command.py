@@ -11,7 +11,7 @@ import shtab
 from . import __version__, caching
 from .commands import COMMANDS
 from .problem import Problem
-from .variables import instead, near_file
+from .variables import suggestion, near_file
 
 
 FILES = ("system", "input")  # arguments that are completed as file names
@@ -25,7 +25,7 @@ class Words(argparse.ArgumentParser):
         choice = re.fullmatch(r"(.*invalid choice: '?(.*?)'?) \(choose from (.*)\)", message)
         if choice:
             choices = re.findall(r"[^ ,']+", choice[3])
-            message = f"{choice[1]}; {instead(choice[2], choices, 'choose from')}"
+            message = f"{choice[1]}; {suggestion(choice[2], choices, 'choose from')}"
         super().error(message)
 
     def options(self, name):
@@ -40,7 +40,7 @@ class Words(argparse.ArgumentParser):
         arguments, unknown = self.parse_known_args(words)
         if unknown:
             own = list(dict.fromkeys(self.options(getattr(arguments, "command", None))))
-            remedy = f"; {instead(unknown[0].partition('=')[0], own, 'expected one of these')}" if unknown[0].startswith("-") else ""
+            remedy = f"; {suggestion(unknown[0].partition('=')[0], own, 'expected one of these')}" if unknown[0].startswith("-") else ""
             self.error(f"unrecognized arguments: {' '.join(unknown)}{remedy}")
         return arguments
 

@@ -10,7 +10,7 @@ from fmpy.fmi1 import FMICallException
 
 from .model_exchange import along
 from .problem import Problem
-from .saltation import PAST, Saltation
+from .saltation import CROSSING_DELAY, Saltation
 from .sensitivity import Motion, as_arrays
 
 CHECKED = 1e-6  # relative tolerance to which both FMUs agree after an event
@@ -18,7 +18,7 @@ NEGLIGIBLE = 1e-9  # delay, relative to the flight before the event, that needs 
 FURTHEST = 1e-4  # largest delay at which model exchange detects the event, in s; relative to the time after 1 s
 
 
-class Lost(Exception):
+class CannotFollow(Exception):
     """The co-simulation cannot follow the motion: SciPy takes over."""
 
 
@@ -52,38 +52,38 @@ class Series:
         Return the time; and at an event (time, states) in the middle before it, else None.
         """
         saved = self.model.getFMUState()
-        time, is_at_event = self._go(begin, end)
+        time, is_at_event = self._step_to(begin, end)
         early = None
         if is_at_event:
             self.model.setFMUState(saved)
-            middle, _ = self._go(begin, (begin + time) / 2)
+            middle, _ = self._step_to(begin, (begin + time) / 2)
             early = middle, self.rows(self.state_references)[0]
-            time, is_at_event = self._go(middle, end)
+            time, is_at_event = self._step_to(middle, end)
         self.model.freeFMUState(saved)
         if (early is not None) != is_at_event:
-            raise Lost
+            raise CannotFollow
         return time, early
 
-    def _go(self, begin, end):
+    def _step_to(self, begin, end):
         is_at_event, *_, reached = self.model.doStep(begin, end - begin)
         return (reached if is_at_event else end), is_at_event
 
-    def ahead(self, time, delay):
+    def rows_after(self, time, delay):
         """Return the rows of states and of rates after a further `delay`. The motion stays at `time`."""
         saved = self.model.getFMUState()
         if delay > 0:
             self.model.doStep(time, delay)
-        ahead = self.rows(self.state_references), self.rows(self.rate_references)
+        rows = self.rows(self.state_references), self.rows(self.rate_references)
         self.model.setFMUState(saved)
         self.model.freeFMUState(saved)
-        return ahead
+        return rows
 
     def row(self):
         """Return the values of the variables `of`, and their derivatives, (len(of), len(by))."""
         values, *derivatives = self.rows(self.read_references)
         return values, np.array(derivatives).T
 
-    def pass_over(self, slopes):
+    def handle_event(self, slopes):
         """Handle the event; set the sensitivities after it to `slopes`."""
         self.model.enterEventMode()
         self.model.newDiscreteStates()
@@ -120,7 +120,7 @@ class EventMotion(Motion):
                         known = self.jump(time, early, known)
                     time, early = self.series.step(time, due)
                 rows.append(self.series.row())
-        except (Lost, Problem, FMICallException):
+        except (CannotFollow, Problem, FMICallException):
             self.point.messages.clear()
             time, both, saved = known
             self.model.setFMUState(saved)
@@ -130,20 +130,20 @@ class EventMotion(Motion):
 
     def check(self, time, both, delay=0.0):
         """
-        Raise Lost if co-simulation and model exchange disagree at this time and vector `both`.
+        Raise CannotFollow if co-simulation and model exchange disagree at this time and vector `both`.
 
         Co-simulation is `delay` earlier and is taken ahead, since model exchange does not go back over an event. The variational equations of
         co-simulation are wrong for redundant constraints. In model exchange bounces come to rest slightly earlier.
         """
         count = len(self.state_references)
         slopes = both[count:].reshape(-1, count)
-        self.place(time, both[:count], None)
-        values, rates = self.series.ahead(time - delay, delay)
+        self.set_point(time, both[:count], None)
+        values, rates = self.series.rows_after(time - delay, delay)
         expected = self.along(self.rate_references, slopes)
         pairs = ((values, both.reshape(-1, count)), (rates[1:], expected))
         are_close = all(np.allclose(part, other, rtol=CHECKED, atol=CHECKED * np.max(np.abs(other), initial=0.0)) for part, other in pairs)
         if not are_close or self.series.point.modes() != self.point.modes():
-            raise Lost
+            raise CannotFollow
 
     def jump(self, time, early, known):
         """
@@ -154,11 +154,11 @@ class EventMotion(Motion):
         values, rates = self.series.rows(self.series.state_references), self.series.rows(self.series.rate_references)
         delay, indicator = self.event_at(time, values[0], rates[0])
         at_event = self.at_event(time, (values, rates), delay, early, indicator, is_extrapolated=delay > NEGLIGIBLE * (time - known[0]))
-        self.series.pass_over(at_event[1:])
-        behind = self.moved(at_event, delay).ravel()
-        self.check(time + delay, behind, delay)
+        self.series.handle_event(at_event[1:])
+        after = self.moved(at_event, delay).ravel()
+        self.check(time + delay, after, delay)
         self.model.freeFMUState(known[2])
-        return time + delay, behind, self.model.getFMUState()
+        return time + delay, after, self.model.getFMUState()
 
     def at_event(self, time, both, delay, early, indicator, is_extrapolated):
         """
@@ -183,7 +183,7 @@ class EventMotion(Motion):
         """Return the states and their derivatives after the event, moved back to its time, where it is handled `delay` later."""
         values, rates = both
         later = values + delay * self.rates_between(time, values, rates, delay)
-        states, slopes = Saltation(self, time + delay, later[0], early, indicator, None).pass_over(later[1:], self.acting)
+        states, slopes = Saltation(self, time + delay, later[0], early, indicator, None).handle_event(later[1:], self.acting)
         return self.moved(np.vstack([states, slopes]), -delay)
 
     def moved(self, both, delay):
@@ -193,17 +193,17 @@ class EventMotion(Motion):
     def rates_between(self, time, values, rates, delay):
         """Return the rates of states and derivatives in the middle of the delay, as the midpoint rule needs them."""
         middle = values + delay / 2 * rates
-        self.place(time + delay / 2, middle[0], None)
+        self.set_point(time + delay / 2, middle[0], None)
         return np.vstack([self.model.getReal(self.rate_references), self.along(self.rate_references, middle[1:])])
 
     def event_at(self, time, state, rates):
-        """Return the smallest delay at which model exchange detects the event, and the index of its indicator; raise Lost if there is none."""
+        """Return the smallest delay at which model exchange detects the event, and the index of its indicator; raise CannotFollow if there is none."""
         unit = max(1.0, abs(time))
-        delay = PAST * unit
+        delay = CROSSING_DELAY * unit
         while delay < FURTHEST * unit:
             found = []
             for moved in (-delay, delay):
-                self.place(time + moved, state + moved * rates, None)
+                self.set_point(time + moved, state + moved * rates, None)
                 found.append(self.point.indicators())
             crossing = np.flatnonzero(np.sign(found[0]) * np.sign(found[1]) < 0)
             if len(crossing) == 1:
@@ -211,4 +211,4 @@ class EventMotion(Motion):
             if len(crossing) > 1:
                 break
             delay *= 10
-        raise Lost
+        raise CannotFollow

@@ -40,13 +40,13 @@ class Fit:
 
     def __str__(self):
         width = max(map(len, self.values))
-        lines = [f"{name.ljust(width)}  {self._in_words(name)}" for name in self.values]
+        lines = [f"{name.ljust(width)}  {self._value_text(name)}" for name in self.values]
         lines += [f"residual of {name}: {rms:.3g} (root of mean square)" for name, rms in self.rms.items()]
-        return "\n".join([*lines, *map(in_words, self.undetermined), *self.remarks])
+        return "\n".join([*lines, *map(direction_text, self.undetermined), *self.remarks])
 
     __repr__ = __str__
 
-    def _in_words(self, name):
+    def _value_text(self, name):
         value, deviation, (low, high) = self.values[name], self.deviations[name], self.intervals[name]
         if not np.isfinite(deviation):
             return f"{value:.9g} is not determined"
@@ -99,9 +99,9 @@ class Fit:
             The path of the page.
         """
         rows = "".join(
-            f"<tr><td>{html.escape(name)}</td><td>{self._in_words(name)}</td><td>{low:.6g} ... {high:.6g}</td></tr>" for name, (low, high) in self.intervals.items()
+            f"<tr><td>{html.escape(name)}</td><td>{self._value_text(name)}</td><td>{low:.6g} ... {high:.6g}</td></tr>" for name, (low, high) in self.intervals.items()
         )
-        remarks = "".join(f"<p>{html.escape(remark)}</p>" for remark in [*map(in_words, self.undetermined), *self.remarks])
+        remarks = "".join(f"<p>{html.escape(remark)}</p>" for remark in [*map(direction_text, self.undetermined), *self.remarks])
         text = f"""<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Fit of {html.escape(self.name)}</title>
 <style>:root{{color-scheme:light dark}}body{{font:16px/1.5 system-ui,sans-serif;max-width:60rem;margin:2rem auto;padding:0 1rem}}td,th{{padding:.2rem 1rem .2rem 0;text-align:left}}img{{max-width:100%;background:#fff}}</style>
 </head><body><h1>Fit of {html.escape(self.name)}</h1><table><tr><th>name</th><th>value and standard deviation</th><th>95 % interval</th></tr>{rows}</table>{remarks}
@@ -109,7 +109,7 @@ class Fit:
         return write_whole(path, text)
 
 
-def in_words(direction):
+def direction_text(direction):
     """Return a sentence about an undetermined direction."""
     if len(direction) == 1:
         return f"not determined by the data: {next(iter(direction))}, which does not change the measured variables"

@@ -23,7 +23,7 @@ def along(of, by):
     return f"der({of[4:-1]}.by.{by})" if of.startswith("der(") else f"{of}.by.{by}"
 
 
-def words_for(by):
+def lagc_options(by):
     """Return the arguments of lagc that add the variational equations for these names."""
     return [word for name in by for word in ("--along", name)]
 
@@ -180,8 +180,8 @@ def opened(system, values, method=None, what="be linearized there", adjoint=Fals
     Raise Problem if the FMU lacks these abilities or fails; the text of a failure contains "cannot" and `what`.
     """
     messages = [] if messages is None else messages
-    words = ADJOINT if adjoint else words_for(by)
-    with fmu_of(system, method=method, fmi=3 if (adjoint or stops_at_events) and not is_fmu(system) else None, words=words) as fmu:
+    options = ADJOINT if adjoint else lagc_options(by)
+    with fmu_of(system, method=method, fmi=3 if (adjoint or stops_at_events) and not is_fmu(system) else None, words=options) as fmu:
         description = described(fmu)
         if not (stops_at_events or in_steps):
             _check_abilities(fmu, description, adjoint)

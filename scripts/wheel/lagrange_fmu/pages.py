@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from .building import origin_of, system_file
-from .caching import keep_what_zig_compiles
+from .caching import share_zig_cache
 from .live_page.editor import write_editor
 from .live_page.page import write_page
 from .problem import Problem
@@ -28,6 +28,6 @@ def live(system, settings=None, output=None, edit=False):
         raise Problem(f"the page that changes {system} begins with the values in it; expected edit=True without {', '.join(settings)}")
     if edit:
         return editor(system, output)
-    keep_what_zig_compiles()
+    share_zig_cache()
     with fmu_of(system) as fmu:
         return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system), settings_of(fmu, settings))

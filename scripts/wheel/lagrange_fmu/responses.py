@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .problem import Problem
-from .variables import instead, names_of
+from .variables import suggestion, names_of
 
 POINTS = 400  # number of points of a default grid
 BEYOND = 10.0  # factor by which default frequencies extend beyond those of the poles on both sides
@@ -89,7 +89,7 @@ class Step(Responses):
 
 def _index(name, names, what):
     if name not in names:
-        raise Problem(f"'{name}' is not {what} of the linearization; {instead(name, names)}")
+        raise Problem(f"'{name}' is not {what} of the linearization; {suggestion(name, names)}")
     return names.index(name)
 
 

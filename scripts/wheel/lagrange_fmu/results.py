@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .problem import Problem
-from .variables import instead
+from .variables import suggestion
 from .whole_files import write_whole
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class Result(np.ndarray):
 
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, str) and key not in (self.dtype.names or ()):
-            raise Problem(f"'{key}' is not recorded; {instead(key, self.dtype.names or (), 'recorded are')}")
+            raise Problem(f"'{key}' is not recorded; {suggestion(key, self.dtype.names or (), 'recorded are')}")
         found = super().__getitem__(key)
         return found.view(np.ndarray) if isinstance(key, str) else found
 

@@ -23,11 +23,11 @@ SHORTEST_OF_STATES, SHORTEST_OF_PARAMETERS = 1e-11, 1e-2  # shortest step, relat
 ROUGH, UNKNOWN = 1e-5, 1e-2  # relative difference of second and fourth order: below ROUGH a step is short enough; above UNKNOWN there is no derivative
 ROUNDING = 1e-16  # relative rounding error of states and times
 TINY = 1e-300  # avoids divisions by 0
-PAST = 1e-12  # delay after a crossing at which the event is handled, in s; relative to the time after 1 s
-AT_ONCE = 1e-9  # events closer together than this count as simultaneous, in s; relative to the time after 1 s
+CROSSING_DELAY = 1e-12  # delay after a crossing at which the event is handled, in s; relative to the time after 1 s
+SIMULTANEOUS = 1e-9  # events closer together than this count as simultaneous, in s; relative to the time after 1 s
 ROUNDS = 100  # iterations of event mode at most
-AWAY = 1e-6  # relative and absolute perturbation of the states that violates constraints
-EARLY = 1e-2  # share of the flight before an event by which constraints are applied earlier
+PERTURBATION = 1e-6  # relative and absolute perturbation of the states that violates constraints
+EARLIER = 1e-2  # share of the flight before an event by which constraints are applied earlier
 TRIALS, NEAR, CONVERGED = 30, 1e-16, 1e-13  # iterations of the secant method; its tolerances: in s, relative to the time after 1 s, and relative to the delay
 
 
@@ -42,11 +42,11 @@ def crossing_of(indicators, begin, end):
     if len(crossing) == 0:
         return None
     times = [brentq(lambda time: indicators(time)[k], begin, end, xtol=1e-15, rtol=4 * np.finfo(float).eps) for k in crossing]
-    place = int(np.argmin(times))
-    unit = max(1.0, abs(times[place]))
-    if np.count_nonzero(np.array(times) < times[place] + AT_ONCE * unit) > 1:
-        raise Problem(f"there are several events at once at {times[place]:g} s, through which there are no derivatives; expected a stop time before them")
-    return times[place] + PAST * unit, crossing[place]
+    nearest = int(np.argmin(times))
+    unit = max(1.0, abs(times[nearest]))
+    if np.count_nonzero(np.array(times) < times[nearest] + SIMULTANEOUS * unit) > 1:
+        raise Problem(f"there are several events at once at {times[nearest]:g} s, through which there are no derivatives; expected a stop time before them")
+    return times[nearest] + CROSSING_DELAY * unit, crossing[nearest]
 
 
 class OtherModes(Problem):
@@ -65,17 +65,17 @@ class Saltation:
         """Handle the event once to find the modes after it; `before` is a time and a state at which the event is not due yet."""
         self.motion, self.model, self.point, self.inputs = motion, motion.model, motion.point, inputs
         self.time, self.state, self.before, self.indicator = time, state, before, indicator
-        motion.place(*before, inputs)
+        motion.set_point(*before, inputs)
         self.saved = self.model.getFMUState()
         is_constrained = self.moves_onto_constraints()
         self.model.setFMUState(self.saved)
-        motion.place(time, state, inputs)
+        motion.set_point(time, state, inputs)
         self.rates = np.array(self.model.getReal(motion.rate_references))
         self.level = self.point.indicators()[indicator]
         after = self.update()
         self.noise = ROUNDING / ROUGH * np.append(np.maximum(abs(state), abs(after)), max(1.0, abs(time)))
         self.modes = self.point.modes()
-        self.back, self.own = EARLY * (time - before[0]) if is_constrained else 0.0, 0.0
+        self.back, self.own = EARLIER * (time - before[0]) if is_constrained else 0.0, 0.0
         if is_constrained:
             self.model.setFMUState(self.saved)
             self.own = self.by_constraints(state)
@@ -83,8 +83,8 @@ class Saltation:
     def moves_onto_constraints(self):
         """Return True if event mode before the event moves perturbed states, that is, if the system has constraints there."""
         time, state = self.before
-        off = state * (1 + AWAY) + AWAY
-        self.motion.place(time, off, self.inputs)
+        off = state * (1 + PERTURBATION) + PERTURBATION
+        self.motion.set_point(time, off, self.inputs)
         try:
             return (self.update() != off).any()
         except (Problem, FMICallException):
@@ -95,7 +95,7 @@ class Saltation:
         """Return the state after a further time `span` from `state` at self.time + delay, by one step of the classical Runge-Kutta method."""
 
         def rates(share, state):
-            self.motion.place(self.time + delay + share * span, state, self.inputs)
+            self.motion.set_point(self.time + delay + share * span, state, self.inputs)
             return np.array(self.model.getReal(self.motion.rate_references))
 
         first = rates(0.0, state)
@@ -111,7 +111,7 @@ class Saltation:
         """
         delay = self.delay_of(state)
         early = self.along(delay, state + delay * self.rates, -self.back)
-        self.motion.place(self.time + delay - self.back, early, self.inputs)
+        self.motion.set_point(self.time + delay - self.back, early, self.inputs)
         return self.along(delay - self.back, self.update(), self.back) - (state + delay * self.rates)
 
     def update(self):
@@ -128,7 +128,7 @@ class Saltation:
 
     def value_at(self, state, delay):
         """Return the event indicator at a state that has moved for a time `delay`."""
-        self.motion.place(self.time + delay, state + delay * self.rates, self.inputs)
+        self.motion.set_point(self.time + delay, state + delay * self.rates, self.inputs)
         return self.point.indicators()[self.indicator]
 
     def delay_of(self, state):
@@ -163,17 +163,17 @@ class Saltation:
             if self.back > 0:
                 state = state + self.by_constraints(state) - self.own
             delay = self.delay_of(state)
-            self.motion.place(self.time + delay, state + delay * self.rates, self.inputs)
+            self.motion.set_point(self.time + delay, state + delay * self.rates, self.inputs)
             after = self.update()
         except FMICallException:
             why = "; ".join(self.point.messages)
             raise Problem(f"the event at {self.time:g} s fails {by}for some neighbouring motions, so that there is no derivative: {why}; expected other values, or a min and a max that exclude them") from None
         differing = self.point.differing(self.modes, self.point.modes())
         if differing:
-            raise OtherModes(self.what_differs(differing, by))
+            raise OtherModes(self.mode_message(differing, by))
         return np.append(after, delay)
 
-    def what_differs(self, names, by):
+    def mode_message(self, names, by):
         """Return the message for a neighbour whose modes with these names differ after the event."""
         quoted = ", ".join(f"'{name}'" for name in names)
         if {*names} <= {*self.point.numbers}:
@@ -198,8 +198,8 @@ class Saltation:
     def change_by(self, reference):
         """Return the derivative of the state after the event and of the delay by a parameter."""
         self.model.setFMUState(self.saved)
-        still, step = np.zeros_like(self.state), STEP * self.sizes_of([reference])[reference]
-        return self.change(lambda length: self.neighbour(still, {reference: length}), lambda step: self.rule_of(reference, step), step, SHORTEST_OF_PARAMETERS)
+        unchanged, step = np.zeros_like(self.state), STEP * self.sizes_of([reference])[reference]
+        return self.change(lambda length: self.neighbour(unchanged, {reference: length}), lambda step: self.rule_of(reference, step), step, SHORTEST_OF_PARAMETERS)
 
     def change(self, function, rule_of, step, shortest):
         """
@@ -235,30 +235,30 @@ class Saltation:
         self.model.setFMUState(self.saved)
         steps = {reference: STEP * size for reference, size in self.sizes_of(acting).items()}
         ends = {reference: self.rule_of(reference, step)[-1][0] * step for reference, step in steps.items()}
-        still = np.zeros_like(self.state)
+        unchanged = np.zeros_like(self.state)
         try:
-            return (self.neighbour(still, ends) != self.neighbour(still, {})).any()
+            return (self.neighbour(unchanged, ends) != self.neighbour(unchanged, {})).any()
         except Problem:
             return True
 
-    def pass_over(self, slopes, acting):
+    def handle_event(self, slopes, acting):
         """
         Handle the event in the FMU; return the state after it and its derivatives.
 
         `slopes` are the derivatives before the event, a row each; `acting` has for each row the references of the parameters that vary with it.
         """
         try:
-            return self._pass_over(slopes, acting)
+            return self._handle_event(slopes, acting)
         finally:
             self.model.freeFMUState(self.saved)
 
-    def _pass_over(self, slopes, acting):
+    def _handle_event(self, slopes, acting):
         by_parameter = {reference: self.change_by(reference) for reference in relevant(self.change_anything, sorted({*itertools.chain(*acting)}))}
-        still = np.zeros(len(self.state) + 1)
-        found = [(self.change_along(direction) if direction.any() else still) + sum(by_parameter.get(reference, still) for reference in references) for direction, references in zip(slopes, acting)]
+        unchanged = np.zeros(len(self.state) + 1)
+        found = [(self.change_along(direction) if direction.any() else unchanged) + sum(by_parameter.get(reference, unchanged) for reference in references) for direction, references in zip(slopes, acting)]
         self.model.setFMUState(self.saved)
-        self.motion.place(self.time, self.state, self.inputs)
+        self.motion.set_point(self.time, self.state, self.inputs)
         state = self.update()
-        self.motion.place(self.time, state, self.inputs)
+        self.motion.set_point(self.time, state, self.inputs)
         rates = np.array(self.model.getReal(self.motion.rate_references))
         return state, np.array([change[:-1] - change[-1] * rates for change in found]).reshape(-1, len(state))

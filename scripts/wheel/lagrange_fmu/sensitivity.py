@@ -21,9 +21,9 @@ from fmpy.fmi1 import FMICallException
 from .differences import relevant, rules_within
 from .saltation import Saltation, crossing_of
 
-LOOKS = 8  # intervals of a step in which the event indicators are compared; a double crossing within one is missed
+INTERVALS = 8  # intervals of a step in which the event indicators are compared; a double crossing within one is missed
 STEP = 1e-3  # relative, of differences through initialization
-AWAY = 1e-3  # relative and absolute perturbation of the states that violates constraints
+PERTURBATION = 1e-3  # relative and absolute perturbation of the states that violates constraints
 
 
 class Start:
@@ -31,34 +31,34 @@ class Start:
 
     def __init__(self, point, by, values):
         self.point, self.values = point, values
-        self.states, self.modes, self.sides = self.found(values)
+        self.states, self.modes, self.sides = self.initialize(values)
         self.at = dict(zip(by, point.given(by, self.states, values)))
         self.step = {name: STEP * (abs(value) or 1.0) for name, value in self.at.items()}
         self.rules = {name: rules_within(value, self.step[name], point.limits[name]) for name, value in self.at.items()}
 
-    def found(self, values):
+    def initialize(self, values):
         """Return the states, the modes, and the signs of the event indicators after initialization at these values."""
         states = self.point.start(values=values)
         return states, self.point.modes(), np.sign(self.point.indicators())
 
-    def changed(self, steps):
-        """Return what found() does, with the values changed by steps[name] steps; None if the FMU cannot start there."""
+    def initialize_neighbour(self, steps):
+        """Return the result of initialize() with the values changed by steps[name] steps; None if the FMU cannot start there."""
         try:
-            return self.found(self.values | {name: self.at[name] + count * self.step[name] for name, count in steps.items()})
+            return self.initialize(self.values | {name: self.at[name] + count * self.step[name] for name, count in steps.items()})
         except FMICallException:
             self.point.messages.clear()
             return None
 
     def changes(self, names):
         """Return True if changing all these values together changes the start."""
-        found = self.changed({name: self.rules[name][0][-1][0] for name in names})
+        found = self.initialize_neighbour({name: self.rules[name][0][-1][0] for name in names})
         return found is None or (found[0] != self.states).any() or found[1] != self.modes or (found[2] != self.sides).any()
 
     def slope_by(self, name):
         """Return the derivative of the states by a value, by a central difference, or a one-sided one where only one side can start."""
         why = "the motion starts from no neighbouring value"
         for rule in self.rules[name]:
-            found = [self.changed({name: count}) for count, _ in rule]
+            found = [self.initialize_neighbour({name: count}) for count, _ in rule]
             if None in found:
                 continue
             states, modes, sides = zip(*found)
@@ -100,9 +100,9 @@ class Motion:
         self.rate_references = [reference[name] for name in point.derivatives]
         self.read_references = [reference[name] for name in self.of]
         self.acting = acting_of(point, self.by)
-        self.hidden = {reference[name]: place for place, name in enumerate(point.states) if name not in point.outputs}  # index of states that FMI does not count as unknowns
+        self.hidden = {reference[name]: index for index, name in enumerate(point.states) if name not in point.outputs}  # index of states that FMI does not count as unknowns
 
-    def place(self, time, state, inputs):
+    def set_point(self, time, state, inputs):
         """Set time, states and inputs of the FMU."""
         self.model.setTime(time)
         self.point.set_states(state)
@@ -118,7 +118,7 @@ class Motion:
     def rates(self, time, both, inputs):
         """Return the right-hand side of the motion and of its variational equations."""
         count = len(self.state_references)
-        self.place(time, both[:count], inputs)
+        self.set_point(time, both[:count], inputs)
         slopes = both[count:].reshape(len(self.by), count)
         values = self.model.getReal(self.rate_references)
         return np.concatenate([values, self.along(self.rate_references, slopes).ravel()]) if self.by else np.array(values)
@@ -130,7 +130,7 @@ class Motion:
         It leaves out the derivatives of the sensitivities' rates by the states. Newton's iteration takes a few more iterations for it.
         """
         count = len(self.state_references)
-        self.place(time, both[:count], inputs)
+        self.set_point(time, both[:count], inputs)
         return np.kron(np.eye(len(both) // count), self.point.jacobian(self.point.derivatives, self.point.states))
 
     def start(self, values):
@@ -140,11 +140,11 @@ class Motion:
     def read(self, time, both, inputs):
         """Return the values of the variables `of`, and their derivatives, (len(of), len(by))."""
         count = len(self.state_references)
-        self.place(time, both[:count], inputs)
+        self.set_point(time, both[:count], inputs)
         slopes = both[count:].reshape(len(self.by), count)
         values = np.array(self.model.getReal(self.read_references))
         unknowns = [reference for reference in self.read_references if reference not in self.hidden]
-        derivatives = {reference: slopes[:, place] for reference, place in self.hidden.items()}
+        derivatives = {reference: slopes[:, index] for reference, index in self.hidden.items()}
         if self.by and unknowns:
             derivatives |= zip(unknowns, self.along(unknowns, slopes).T)
         return values, np.array([derivatives[reference] for reference in self.read_references if self.by]).reshape(len(values), len(self.by))
@@ -183,7 +183,7 @@ class Motion:
             while due and due[0] <= reached:
                 rows.append(self.read(due[0], dense(due.pop(0)), inputs))
             if event:
-                return event[0], self.pass_over(event, dense, solver.t_old, inputs)
+                return event[0], self.handle_event(event, dense, solver.t_old, inputs)
         return end, steps.solver.y
 
     def obstacle(self, time, both, inputs):
@@ -193,11 +193,11 @@ class Motion:
         Return None for a system without constraints, or with event indicators.
         """
         state = both[: len(self.state_references)]
-        self.place(time, state * (1 + AWAY) + AWAY, inputs)
+        self.set_point(time, state * (1 + PERTURBATION) + PERTURBATION, inputs)
         is_constrained, _ = self.model.completedIntegratorStep()
         if not is_constrained or self.point.indicator_count > 0:
             return None
-        self.place(time, state, inputs)
+        self.set_point(time, state, inputs)
         steepest = np.argmax(np.max(np.abs(self.point.jacobian(self.point.derivatives, self.point.states)), axis=1))
         return (
             f"the constraints become singular, and {self.point.derivatives[steepest]} changes ever faster with the states, as at a flat position or at the limit of a mechanism, through which "
@@ -217,11 +217,11 @@ class Motion:
         count = len(self.state_references)
 
         def indicators(time):
-            self.place(time, dense(time)[:count], inputs)
+            self.set_point(time, dense(time)[:count], inputs)
             return self.point.indicators()
 
-        looks = np.linspace(solver.t_old, solver.t, LOOKS + 1)
-        return next((event for event in (crossing_of(indicators, *part) for part in zip(looks, looks[1:])) if event), None)
+        instants = np.linspace(solver.t_old, solver.t, INTERVALS + 1)
+        return next((event for event in (crossing_of(indicators, *part) for part in zip(instants, instants[1:])) if event), None)
 
     def saltation(self, event, dense, before, inputs):
         """Return the Saltation of an event, (time, index), in a step that begins at the time `before`."""
@@ -230,11 +230,11 @@ class Motion:
         early = (before + time) / 2
         return Saltation(self, time, dense(time)[:count], (early, dense(early)[:count]), indicator, inputs)
 
-    def pass_over(self, event, dense, before, inputs):
+    def handle_event(self, event, dense, before, inputs):
         """Handle an event; return the vector `both` after it."""
         count = len(self.state_references)
         slopes = dense(event[0])[count:].reshape(len(self.by), count)
-        state, slopes = self.saltation(event, dense, before, inputs).pass_over(slopes, self.acting)
+        state, slopes = self.saltation(event, dense, before, inputs).handle_event(slopes, self.acting)
         return np.concatenate([state, slopes.ravel()])
 
 

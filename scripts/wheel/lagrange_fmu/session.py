@@ -17,7 +17,7 @@ from .quantities import number_of
 from .running import fmu_of
 from .saved_state import State, check_ability, check_state, content2, content3, go_to2, go_to3
 from .simulation import described, experiment_of, log_into, tolerance_of
-from .variables import checked_start, numbers_by_name, startable, why_not
+from .variables import checked_start, numbers_by_name, startable, unsettable_reason
 
 
 def _release(folder, instances):
@@ -112,7 +112,7 @@ class Simulation(NamedValues):
         name = variable.name
         if name in startable(self.description):
             raise Problem(f"'{name}' can be set at the start alone; expected start(..., {{'{name}': ...}}) or reset({{'{name}': ...}})")
-        raise Problem(f"'{name}' of {self.description.modelName} cannot be set{why_not(name, self.description)}; these are inputs: {', '.join(self.inputs) or 'none'}")
+        raise Problem(f"'{name}' of {self.description.modelName} cannot be set{unsettable_reason(name, self.description)}; these are inputs: {', '.join(self.inputs) or 'none'}")
 
     def step(self, length):
         """Advance by a length in s, with constant inputs. Raise Problem if the step fails; then the time is unchanged, and restore() and reset() are possible."""

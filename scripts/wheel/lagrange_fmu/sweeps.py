@@ -18,9 +18,9 @@ RUNTIME = PACKAGE / "runtime"
 HOW = (PACKAGE / "ensembles.py", Path(__file__))  # files that define how the libraries are compiled; a part of their key in the cache
 
 
-def compiled(place, name, key, what, words_for):
+def compiled(place, name, key, what, arguments_for):
     """
-    Return the path of a library, in the folder place/name, which zig compiles with the arguments words_for(library).
+    Return the path of a library, in the folder place/name, which zig compiles with the arguments arguments_for(library).
 
     A library whose key is in the cache is copied from it. Raise Problem, whose text begins with `what`, if the compilation fails.
     """
@@ -28,7 +28,7 @@ def compiled(place, name, key, what, words_for):
 
     def compile_library():
         library.parent.mkdir()
-        zig("cc", *words_for(library), cache=place / "cache")
+        zig("cc", *arguments_for(library), cache=place / "cache")
 
     take_or_compile(caching.key_of(runtime_key(), *(file.read_bytes() for file in HOW), *key), library.parent, what, compile_library)
     return library
@@ -76,7 +76,7 @@ def sweeping():
 
 
 def sweep_by_words(system, words):
-    """Sweep by the arguments that sweep_words.py declares; return the path of the Parquet file."""
+    """Sweep by the arguments that sweep_arguments.py declares; return the path of the Parquet file."""
     sweep = sweeping().sweep
     with fmu_of(system) as fmu, tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
@@ -84,7 +84,7 @@ def sweep_by_words(system, words):
 
 
 def variation(name, values, random):
-    """Check a range or values; return (name, values) as sweep_words.variation does: a tuple (FROM, TO, COUNT or None), or a list."""
+    """Check a range or values; return (name, values) as sweep_arguments.variation does: a tuple (FROM, TO, COUNT or None), or a list."""
     try:
         numbers = [] if isinstance(values, str) else [value if isinstance(value, str) else float(value) for value in values]
     except (TypeError, ValueError):

@@ -16,7 +16,7 @@ from fmpy.fmi1 import FMICallException
 
 from .building import derive
 from .event_motion import EventMotion
-from .model_exchange import along, opened, words_for
+from .model_exchange import along, opened, lagc_options
 from .models import Slave2
 from .problem import Problem
 from .running import is_fmu
@@ -38,7 +38,7 @@ def _indicators_of(system, by):
     with tempfile.TemporaryDirectory() as folder, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         try:
-            description = derive(system, Path(folder), None, words_for(by))
+            description = derive(system, Path(folder), None, lagc_options(by))
         except Problem:
             return None
         return int(description.get("numberOfEventIndicators", 0)) if (Path(folder) / "system.c").stat().st_size < LARGEST else None
@@ -70,7 +70,7 @@ def followed(system, values, by):
     indicators = None if is_fmu(system) or not by else _indicators_of(system, by)
     if indicators == 0:
         with opened(system, values, what="be followed", by=by) as point:
-            if SeriesMotion(point, [], by, CHECKED).begins_right():
+            if SeriesMotion(point, [], by, CHECKED).starts_consistently():
                 yield point
                 return
     with opened(system, values, what="be followed") as point:
@@ -102,7 +102,7 @@ class SeriesMotion:
         self.point.start(values=values | starts)
         return slopes
 
-    def begins_right(self):
+    def starts_consistently(self):
         """
         Return True if the rates of the sensitivities at the start are equal to the FMU's directional derivatives.
 
@@ -220,7 +220,7 @@ class DifferencedMotion:
         size = np.max(np.abs(found - found[0]), axis=0)
         size = np.where(size > 0, size, np.maximum(np.max(np.abs(found), axis=0), 1e-300))
 
-        def beside(name, step):
+        def motion_at(name, step):
             value = values[name] + step
             low, high = self.point.limits[name]
             try:
@@ -228,17 +228,17 @@ class DifferencedMotion:
             except Problem:
                 return None
 
-        return np.stack([self._slope(lambda step: beside(name, step), name, values[name], found, size) for name in self.by], axis=-1)
+        return np.stack([self._slope(lambda step: motion_at(name, step), name, values[name], found, size) for name in self.by], axis=-1)
 
-    def _slope(self, beside, name, value, found, size):
+    def _slope(self, motion_at, name, value, found, size):
         """
-        Return the derivative by one value; beside(step) returns the motion at value + step, or None.
+        Return the derivative by one value; motion_at(step) returns the motion at value + step, or None.
 
         The step is adapted until it changes the motion by LEAST_CHANGE to LARGEST_CHANGE of its size.
         """
         step = self.steps.get(name, DIFFERENCE * (abs(value) or 1.0))
         for _ in range(TRIALS):
-            ends = {end: motion for end in (step, -step) if (motion := beside(end)) is not None}
+            ends = {end: motion for end in (step, -step) if (motion := motion_at(end)) is not None}
             if not ends:
                 step *= 0.1
                 continue

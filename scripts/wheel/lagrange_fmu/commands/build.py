@@ -2,7 +2,7 @@
 
 from ..building import NATIVE, build
 from ..runtime.scripts.cross import PLATFORM_NAMES
-from .words_of_systems import SYSTEM, add_fmi, add_output
+from .shared_arguments import SYSTEM, add_fmi, add_output
 
 
 def arguments(parser):

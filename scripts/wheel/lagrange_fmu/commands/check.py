@@ -1,7 +1,7 @@
 """Report the mistakes in the file of a system, without building it; start values are checked by run."""
 
 from ..building import check
-from .words_of_systems import SYSTEM
+from .shared_arguments import SYSTEM
 
 
 def arguments(parser):

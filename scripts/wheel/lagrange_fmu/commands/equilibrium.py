@@ -1,7 +1,7 @@
 """Find an equilibrium of a system near a guess; print the point, and its stability by the eigenvalues of the linearization."""
 
 from ..quantities import assignment
-from .words_of_systems import SYSTEM_OR_FMU
+from .shared_arguments import SYSTEM_OR_FMU
 
 
 def arguments(parser):

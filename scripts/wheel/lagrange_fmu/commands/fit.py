@@ -6,7 +6,7 @@ import warnings
 from pathlib import Path
 
 from ..quantities import assignment
-from .words_of_systems import SYSTEM_OR_FMU
+from .shared_arguments import SYSTEM_OR_FMU
 
 
 def bounds(text):

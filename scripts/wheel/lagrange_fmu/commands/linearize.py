@@ -1,7 +1,7 @@
 """Linearize a system at a point: print the matrices A, B, C, D and the eigenvalues of A, in independent states if there are constraints."""
 
 from ..quantities import assignment
-from .words_of_systems import SYSTEM_OR_FMU
+from .shared_arguments import SYSTEM_OR_FMU
 
 
 def arguments(parser):

@@ -1,7 +1,7 @@
 """Write a page in which the FMU of a system runs, with sliders for parameters and inputs, in any browser and without a network."""
 
 from ..quantities import assignment
-from .words_of_systems import SYSTEM_OR_FMU
+from .shared_arguments import SYSTEM_OR_FMU
 
 
 def arguments(parser):

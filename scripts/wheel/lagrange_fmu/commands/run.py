@@ -4,7 +4,7 @@ import argparse
 import math
 
 from ..quantities import assignment
-from .words_of_systems import SYSTEM_OR_FMU
+from .shared_arguments import SYSTEM_OR_FMU
 
 
 def positive(text):

@@ -1,7 +1,7 @@
 """Print the equations of a system and their derivation as a textbook does: as text, as a LaTeX document, or as a script for SymPy."""
 
 from ..quantities import assignment
-from .words_of_systems import SYSTEM
+from .shared_arguments import SYSTEM
 
 
 def arguments(parser):

@@ -29,7 +29,7 @@ CONVERGED = 1e-13  # relative step that is negligible
 FURTHEST = 1e9  # values beyond this multiple of nominal values and the guess mean that forces only vanish at infinity
 DOWNHILL, NUDGE = 40, 0.1  # number of moves along accelerations at most, and the length of the first, relative to nominal values
 GROWTH, STRAIGHT, LONGEST = 2.0, 0.9, 10.0  # growth of moves up to LONGEST, where the cosine of the angle between two of them is above STRAIGHT
-TOUCH = 3e-9  # relative move into a contact; initialization removes the penetration so exactly that the contact closes
+CLOSING_MOVE = 3e-9  # relative move into a contact; initialization removes the penetration so exactly that the contact closes
 PERTURBED, DOUBLE = 1e-9, 1e-5  # errors relative to the norm of the matrix: of an eigenvalue of condition number 1, and of any eigenvalue at most
 WORK = "nonConservativeWork"  # state on which nothing depends
 SHOWN, NOTABLE = 3, 1e-3  # rates in a message: their number at most, and the smallest relative to the largest
@@ -80,20 +80,20 @@ class _Search:
 
     def __init__(self, point, hold, vary):
         self.point, self.vary, self.hold = point, vary, hold
-        self.places = [point.states.index(name) for name in hold if name in point.states]
+        self.fixed_indices = [point.states.index(name) for name in hold if name in point.states]
         self.outputs = [name for name in hold if name not in point.states]
-        self.wanted = np.array([hold[name] for name in [*(point.states[i] for i in self.places), *self.outputs]])
+        self.targets = np.array([hold[name] for name in [*(point.states[i] for i in self.fixed_indices), *self.outputs]])
         self.size = np.array([point.nominals[name] for name in [*point.states, *vary]])
-        fixed = [point.nominals[point.states[i]] for i in self.places] + [max(point.nominals[name], abs(hold[name])) for name in self.outputs]
+        fixed = [point.nominals[point.states[i]] for i in self.fixed_indices] + [max(point.nominals[name], abs(hold[name])) for name in self.outputs]
         self.weight = np.array([*(1 / self.size[: len(point.states)]), *(PRECEDENCE / np.array(fixed))])
-        self.jacobian, self.reach, self.course = None, NUDGE, np.zeros(len(self.size))
+        self.jacobian, self.move_length, self.direction = None, NUDGE, np.zeros(len(self.size))
 
     def go_to(self, values):
         """Initialize the FMU; return the values after projection onto the constraints, and the residuals there."""
         count = len(self.point.states)
         self.point.values |= dict(zip(self.vary, values[count:]))
         at = self.point.start(values[:count])
-        found = [*self.point.read(self.point.derivatives), *(np.array([*at[self.places], *self.point.read(self.outputs)]) - self.wanted)]
+        found = [*self.point.read(self.point.derivatives), *(np.array([*at[self.fixed_indices], *self.point.read(self.outputs)]) - self.targets)]
         return np.concatenate([at, values[count:]]), np.array(found)
 
     def move_by(self, values, move):
@@ -113,7 +113,7 @@ class _Search:
             basis = np.eye(count)
         self.go_to(values)
         names = [*point.states, *self.vary]
-        fixed = np.eye(len(names))[self.places]
+        fixed = np.eye(len(names))[self.fixed_indices]
         self.jacobian = np.vstack([point.jacobian(point.derivatives, names), fixed, point.jacobian(self.outputs, names)])
         directions = np.zeros((len(names), basis.shape[1] + len(self.vary)))
         directions[:count, : basis.shape[1]] = basis
@@ -153,7 +153,7 @@ class _Search:
         move = np.zeros(len(self.size))
         move[:count] = residual[:count]
         move[coordinates], move[velocities] = residual[velocities], 0.0
-        move[self.places] = 0.0
+        move[self.fixed_indices] = 0.0
         largest = np.max(np.abs(move) / self.size, initial=0.0)
         return move / largest if largest else None
 
@@ -175,7 +175,7 @@ class _Search:
     def unbalanced(self, values, residual):
         """Return the residuals that are not 0 up to rounding, by name."""
         terms = np.abs(self.jacobian) @ np.maximum(self.size, np.abs(values))
-        names = [*self.point.derivatives, *(self.point.states[i] for i in self.places), *self.outputs]
+        names = [*self.point.derivatives, *(self.point.states[i] for i in self.fixed_indices), *self.outputs]
         return {name: value for name, value, size in zip(names, residual, terms) if abs(value) > BALANCED * max(size, 1e-3)}
 
     def run(self):
@@ -194,36 +194,36 @@ class _Search:
             if found is None and (moves == DOWNHILL or not self.unbalanced(values, residual)):
                 break
             moves += found is None
-            values, residual = found or self.moved(values, residual)
+            values, residual = found or self.move_downhill(values, residual)
         values, residual = self.go_to(values)
         off = self.unbalanced(values, residual)
         if off or (np.abs(values) > limits).any():
-            raise Problem(self.why(values, off))
+            raise Problem(self.failure_message(values, off))
         return values
 
-    def moved(self, values, residual):
+    def move_downhill(self, values, residual):
         """Return the values and the residual after a move downhill: longer than the last one if it continues straight on, and halved until there is such a position."""
-        course = self.downhill(residual)
-        if course is None:
+        direction = self.downhill(residual)
+        if direction is None:
             return self.go_to(values)
-        last, own = self.course / self.size, course / self.size
+        last, own = self.direction / self.size, direction / self.size
         is_straight = last @ own > STRAIGHT * np.linalg.norm(last) * np.linalg.norm(own)
-        reach = min(self.reach * GROWTH, LONGEST) if is_straight else NUDGE
+        length = min(self.move_length * GROWTH, LONGEST) if is_straight else NUDGE
         for halving in range(HALVINGS):
-            self.reach, self.course = reach / 2**halving, course if halving == 0 else np.zeros(len(course))
+            self.move_length, self.direction = length / 2**halving, direction if halving == 0 else np.zeros(len(direction))
             try:
-                return self.touched(values, self.reach * course)
+                return self.move_and_close(values, self.move_length * direction)
             except FMICallException:
                 self.point.messages.clear()
         return self.go_to(values)
 
-    def touched(self, values, move):
+    def move_and_close(self, values, move):
         """Return the values and the residual after a move. If initialization has removed a penetration, a tiny second move closes the contact."""
         found = self.move_by(values, move)
         corrected = np.max(np.abs(found[0] - values - move) / self.size)
-        return self.move_by(found[0], TOUCH / self.reach * move) if corrected > self.reach / 2 else found
+        return self.move_by(found[0], CLOSING_MOVE / self.move_length * move) if corrected > self.move_length / 2 else found
 
-    def why(self, values, off):
+    def failure_message(self, values, off):
         """Return the message about accelerations and rates that are not 0."""
         largest = max(map(abs, off.values()), default=0.0)
         units, shown = self.point.units, [name for name in sorted(off, key=lambda name: -abs(off[name])) if abs(off[name]) > NOTABLE * largest][:SHOWN]

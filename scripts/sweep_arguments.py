@@ -24,7 +24,7 @@ def variation(text):
         raise argparse.ArgumentTypeError(f"'{text}' is not NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,...") from None
 
 
-def sweep_words(parser, output):
+def add_sweep_arguments(parser, output):
     """Declare the arguments; `output` describes the default file."""
     parser.add_argument("--vary", action="append", type=variation, required=True, metavar="NAME=FROM:TO:COUNT",
                         help="range of a start value or parameter, or NAME=VALUE,VALUE,...; several make a grid; theta0 is the start value of theta")  # fmt: skip
