@@ -29,7 +29,7 @@
 enum { EVENT_LIMIT = 30 };
 /* Length of the name of an indicator in messages. */
 enum { NAME_SIZE = 200 };
-/* Windows in a communication step that may hide something, after which the motion stops. */
+/* Search intervals in a communication step that may hide a zero, after which the motion stops. */
 enum { UNSURE_LIMIT = 1000 };
 
 /* Divisor of the solver's step if events are too close together, and limit of such divisions in a row. */
