@@ -153,7 +153,7 @@ static void append_axes(struct Drawing *drawing, const struct VisibleParts *visi
     if (!is_attached(visible, i)) append_line(drawing, AXIS, origin, picture_point_of(visible, i));
 }
 
-/* Appends what lies behind the dots: solids, rods and bars, and lines from bodies to their joints. */
+/* Appends the solids, rods and bars, and the lines from bodies to their joints; dots are drawn over them. */
 static void append_bodies(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
   const struct Samples *samples = &visible->samples;
   const struct Connections *connections = &visible->connections;
@@ -307,7 +307,7 @@ static void append_lines(struct Drawing *drawing, const struct VisibleParts *vis
     append_drawn_line(drawing, &visible->view, &model->drawing.lines[i], visible->line_values, size);
 }
 
-/* Draws what the author describes: lines, and shapes on them. Returns false if there is nothing to see. */
+/* Draws the author's lines, and shapes on them. Returns false if there are none. */
 static bool draw_lines(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
   struct Drawing bodies = {.count = 0};
   append_bodies(&bodies, visible, model);

@@ -95,7 +95,7 @@ static void write_contents(const struct Page *page) {
   xmlTextWriterEndElement(page->writer);
 }
 
-/* Writes by what the page was made, and the version of the system; no date, so that builds are reproducible. */
+/* Writes the versions of the system and of lagrange-fmu, and the author; no date, so that builds are reproducible. */
 static void write_origin(const struct Page *page) {
   const struct Origin *origin = &page->model->origin;
   char *version = origin->version != NULL ? format_text("Version %s of the system. ", origin->version) : copy_text("");

@@ -29,7 +29,7 @@ static const char *balance_of(const struct Model *model, bool autonomous) {
          "derivative dL/dt, so that it is not constant either.";
 }
 
-/* Writes what the energies consist of, as far as the system has it. */
+/* Writes the parts of the energies that the system has. */
 static void write_meaning_of_energies(struct Page *page) {
   const struct Model *model = page->model;
   const char *of_bodies = model->mechanism.body_count > 0 ? " half of mass times squared velocity of every body" : "";

@@ -222,7 +222,7 @@ def test_constraints_that_follow_from_others(lagrange_fmu):  # noqa: F811
 
     for name, is_right in (("Held", True), ("Twice", False)):
         with opened(archive(name), {}, by=HELD_BY) as point:
-            assert variational.SeriesMotion(point, [], HELD_BY, 1e-8).begins_right() == is_right
+            assert variational.SeriesMotion(point, [], HELD_BY, 1e-8).starts_consistently() == is_right
 
 
 def test_flat_positions(lagrange_fmu):  # noqa: F811

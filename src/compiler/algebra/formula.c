@@ -48,7 +48,7 @@ static const char *name_of(const struct Printer *printer, Node node) {
   return names != NULL && node != printer->whole && (size_t)node < names->count ? names->of[node] : NULL;
 }
 
-/* Returns a named power of the base of which base^exponent is the *exponent-th whole power; else returns base. */
+/* Returns a named power r of the base with base^exponent = r^*exponent for a whole *exponent; base if there is none. */
 static Node named_root(const struct Printer *printer, Node base, double *exponent) {
   const struct Vertex *vertices = printer->graph->vertices;
   for (size_t i = 0; printer->names != NULL && i < printer->names->named_count; i++) {

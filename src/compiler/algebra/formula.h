@@ -24,7 +24,7 @@ struct Conditional {
   Node guard_condition, positive, other;
 };
 
-/* True for a gate, and for a sum of two gates of which one is open where the other is closed. */
+/* True for a guard, and for a sum of two guards with opposite conditions. */
 bool choice_of(const struct Graph *graph, Node node, struct Conditional *choice);
 
 /* Bytes for a number's text; 17 digits with sign, point and exponent take 25. */

@@ -170,7 +170,7 @@ static Node with_accelerations(const struct Model *model, const struct Equations
   return node;
 }
 
-/* Returns the power of forces, dissipation, drives, and inputs that move positions. */
+/* Returns the power of forces, dissipation, prescribed motions, and inputs that move positions. */
 static Node power_of_forces(const struct Model *model, const struct Equations *equations, const Node *force) {
   struct Graph *graph = model->graph;
   Node power = ZERO;

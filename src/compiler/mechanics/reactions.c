@@ -52,7 +52,7 @@ void reactions_derive(const struct Model *model, Node *reactions) {
   for (size_t i = 0; i < count; i++) shorten(graph, 1, &reactions[i]);
 }
 
-/* Forces at a point that an input moves act on the system through this input. Its drive delivers R, the forces Q. */
+/* Forces at a point that an input moves act on the system through this input. The input delivers R, the forces Q. */
 Node power_of_moving_points(const struct Model *model) {
   struct Graph *graph = model->graph;
   size_t count = model->inputs.count;

@@ -16,7 +16,7 @@
  */
 void reactions_derive(const struct Model *model, Node *reactions);
 
-/* Returns the power of the drives of inputs that move positions; it may contain acceleration symbols. */
+/* Returns the power of the inputs that move positions; it may contain acceleration symbols. */
 Node power_of_moving_points(const struct Model *model);
 
 /* Returns replacements for all symbols: 0 for displacements, other symbols for themselves. */

@@ -6,5 +6,5 @@
 
 #include "read/context/attributes.h"
 
-/* Reports a state of which a derivative is missing, after all elements were read. */
+/* Reports a state whose derivative is missing, after all elements were read. */
 void check_moving_states(const struct Reader *reader);

@@ -15,7 +15,7 @@ struct Instance;
 enum Status {
   STATUS_DONE,
   STATUS_WARNING,
-  STATUS_DISCARD, /* not possible here; the instance can be read, and go on from an earlier state */
+  STATUS_DISCARD, /* not possible here; the instance can be read, and continue from an earlier state */
   STATUS_ERROR    /* the instance can only be reset */
 };
 

@@ -11,7 +11,7 @@
  */
 bool value_read(const char *text, const char *unit, struct Diagnostics *diagnostics, double *value);
 
-/* True if the text is a number with a unit behind it. */
+/* True if the text is a number followed by a unit. */
 bool value_has_unit(const char *text);
 
 /* Does the same as value_read() with the value of an option, such as "-D L"; messages begin with the option. */

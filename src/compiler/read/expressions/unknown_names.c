@@ -45,7 +45,7 @@ static int last_index(const struct Parser *parser, const char *name) {
   return last;
 }
 
-/* Reports a name without an index, or with a wrong one, of which there is a list. False if there is none. */
+/* Reports a name of a list without an index, or with a wrong one. False if there is no such list. */
 static bool report_index(struct Parser *parser, const char *name) {
   const char *bracket = name[strlen(name) - 1] == ']' ? strrchr(name, '[') : NULL;
   char *list = format_text("%.*s", (int)(bracket != NULL ? (size_t)(bracket - name) : strlen(name)), name);
