@@ -367,7 +367,7 @@ def test_many_runs_at_once():
     ('when="time &gt;= n*Ts"', "holds at the start, and does not begin to hold later"),
     ('when="not time &gt; 2"', "holds at the start"),
     ('when="time &lt; -1"', 'when="time < -1" never holds'),
-    ('when="time &gt; 2 and time &lt; 1"', "never holds"),
+    ('when="time &gt; 2 and time &lt; 1"', "holds at no time"),
     ('when="time &gt; 0"', None),
     ('when="time &gt; 1 and time &lt; 2"', None),
     ('when="time &lt; 1 or time &gt; 2"', None),
@@ -387,13 +387,54 @@ def test_many_runs_at_once():
     ('when="cos(x) &lt; 2 and v &gt; 1"', None),
     ('when="abs(v) &gt; 1"', None),
     ('when="Ts &gt; 1"', None),
+    ('when="x &lt; -100 and x &gt; 100"', "holds at no time"),
+    ('when="x &gt; 1 and not x &gt; 0"', "holds at no time"),
+    ('when="2*x - 3 &gt; 0 and x + 2 &lt; 3"', "holds at no time"),
+    ('when="sin(x) &gt; 0.5 and sin(x) &lt; -0.5"', "holds at no time"),
+    ('when="2*x - 2*v &gt; 2 and v - x &gt; 1"', "holds at no time"),
+    ('when="x &gt;= 1 and x &lt;= 1 and x &gt; 1"', "holds at no time"),
+    ('when="o and not o"', "holds at no time"),
+    ('when="o &gt; 1.5 and not o"', "holds at no time"),
+    ('when="flag and not flag"', "holds at no time"),
+    ('when="x &gt; 1 or not x &gt; 1"', "holds at all times"),
+    ('when="o or not o"', "holds at all times"),
+    ('when="x &gt;= 1 and x &lt;= 1"', None),
+    ('when="x &gt; 1 and x &lt; 2"', None),
+    ('when="x &lt; -1 or x &gt; 1"', None),
+    ('when="x &gt; Ts and x &lt; -Ts"', None),
+    ('when="x &gt; 1 and v &lt; 1"', None),
+    ('when="o &gt; 2.5 and o &lt; 3.5"', None),
+    ('when="o - 5 &gt; 0"', None),
+    ('when="o and not n"', None),
+    ('when="flag and not o"', None),
+    ('when="mod(time, Ts)"', "is never below 0, so that it does not pass 0; expected <sample every="),
+    ('when="2 + 3*mod(x, 0.5)"', "is never below 0, .* expected an expression that changes its sign"),
+    ('when="-mod(time, Ts)" direction="rising"', "is never above 0"),
+    ('when="mod(time, -Ts)"', "is never above 0"),
+    ('when="mod(time, Ts) - Ts/2"', None),
+    ('when="mod(x, 0.5) - 0.25"', None),
+    ('when="sign(x)"', None),
 ])  # fmt: skip
 def test_events_that_never_happen(event, message, tmp_path):
     """A mode that another event sets may make the event occur."""
     import re
 
     system = tmp_path / "system.xml"
-    system.write_text('<system name="A"><parameter name="Ts" start="0.1" min="0"/><coordinate name="x" velocity="v"/><mode name="n"/><mode name="o"/><particle mass="1" x="x"/>'
+    system.write_text('<system name="A"><parameter name="Ts" start="0.1" min="0"/><parameter name="flag" type="Boolean" start="false"/><coordinate name="x" velocity="v"/><mode name="n"/><mode name="o"/><particle mass="1" x="x"/>'
                       f'<event {event}><set mode="n">n + 1</set></event><event when="x - 1"><set mode="o">2</set></event></system>')  # fmt: skip
     said = fmu.lagc(system, "-o", tmp_path).stderr
     assert re.search(f"the event never happens: .*{message}", said) if message else "never happens" not in said, said
+
+
+def test_a_sign_is_an_expression_that_passes_0(open_fmu):
+    """By default an event is the way down, at t = 1.5 of 1.5 - t; the way up is none."""
+    fmu.build_systems("samples-signs", {"SignTrigger": """<system name="SignTrigger">
+  <coordinate name="x" velocity="v" unit="m" start="1.5" velocityStart="-1"/><particle mass="1" x="x"/><mode name="down"/><mode name="up"/>
+  <event when="sign(x)"><set mode="down">down + 1</set></event>
+  <event when="sign(x)" direction="rising"><set mode="up">up + 1</set></event>
+</system>"""})  # fmt: skip
+    instance = open_fmu("SignTrigger").initialize()
+    instance.step(1.4)
+    assert instance.get("down", "up") == [0.0, 0.0]
+    instance.step(0.2)
+    assert instance.get("down", "up") == [1.0, 0.0]

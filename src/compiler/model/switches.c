@@ -8,6 +8,17 @@ void append_branch(struct Switches *switches, struct Branch branch) {
   switches->branches[switches->branch_count++] = branch;
 }
 
+void append_remainder(struct Switches *switches, struct Remainder remainder) {
+  switches->remainders = make_room(switches->remainders, switches->remainder_count, sizeof *switches->remainders);
+  switches->remainders[switches->remainder_count++] = remainder;
+}
+
+const struct Branch *branch_with_mode(const struct Switches *switches, Node mode) {
+  for (size_t i = 0; i < switches->branch_count; i++)
+    if (switches->branches[i].mode == mode) return &switches->branches[i];
+  return NULL;
+}
+
 bool has_switches(const struct Switches *switches) {
   return switches->branch_count + switches->contact_count + switches->friction_count > 0;
 }

@@ -56,6 +56,11 @@ struct Friction {
   struct FrictionPlane plane;
 };
 
+/* An expression mod(a, divisor) whose pieces are branches. */
+struct Remainder {
+  Node node, divisor;
+};
+
 /* An assignment of an event, to a coordinate, a velocity or a mode. */
 struct Assignment {
   Node symbol, value;
@@ -88,6 +93,8 @@ struct Switches {
   size_t mode_count; /* modes of all kinds */
   struct Branch *branches;
   size_t branch_count;
+  struct Remainder *remainders;
+  size_t remainder_count;
   struct Contact *contacts;
   size_t contact_count;
   struct Friction *frictions;
@@ -98,6 +105,12 @@ struct Switches {
 
 /* Appends a branch to the list. */
 void append_branch(struct Switches *switches, struct Branch branch);
+
+/* Appends the expression of mod(a, divisor) to the list. */
+void append_remainder(struct Switches *switches, struct Remainder remainder);
+
+/* Returns the branch of a mode; NULL for other nodes. */
+const struct Branch *branch_with_mode(const struct Switches *switches, Node mode);
 
 /* True if events may occur. */
 bool has_switches(const struct Switches *switches);

@@ -50,26 +50,9 @@ static struct Bounds raised(const struct Graph *graph, struct Bounds a, Node exp
   return (struct Bounds){a.high > 0.0 ? pow(a.high, n) : 0.0, a.low > 0.0 ? pow(a.low, n) : INFINITY};
 }
 
-/* Returns the branch of a mode; NULL for other nodes. */
-static const struct Branch *branch_of(const struct Model *model, Node node) {
-  const struct Switches *switches = &model->switches;
-  for (size_t i = 0; i < switches->branch_count; i++)
-    if (switches->branches[i].mode == node) return &switches->branches[i];
-  return NULL;
-}
-
-static double sign_of(double number) {
-  return (number > 0.0) - (number < 0.0);
-}
-
-static struct Bounds of_symbol(const struct Model *model, Node node, const struct Bounds *indicators) {
+static struct Bounds of_symbol(const struct Model *model, Node node) {
   const struct Symbol *symbol = graph_symbol_of(model->graph, node);
-  const struct Branch *branch = symbol->kind == MODE ? branch_of(model, node) : NULL;
-  if (branch != NULL && indicators != NULL) {
-    const struct Bounds *indicator = &indicators[branch - model->switches.branches];
-    return (struct Bounds){sign_of(indicator->low), sign_of(indicator->high)};
-  }
-  if (branch != NULL) return (struct Bounds){-1.0, 1.0};
+  if (symbol->kind == MODE && branch_with_mode(&model->switches, node) != NULL) return (struct Bounds){-1.0, 1.0};
   if (symbol->kind != PARAMETER) return everything;
   const struct Variable *parameter = &model->parameters.items[symbol->index];
   return (struct Bounds){isnan(parameter->minimum) ? -INFINITY : parameter->minimum,
@@ -96,7 +79,7 @@ static struct Bounds of_function(enum Operation operation, struct Bounds a) {
 
 /* True if the node is the sign of the other one, so that their product is its magnitude. */
 static bool is_sign_of(const struct Model *model, Node sign, Node node) {
-  const struct Branch *branch = branch_of(model, sign);
+  const struct Branch *branch = branch_with_mode(&model->switches, sign);
   return branch != NULL && branch->indicator == node;
 }
 
@@ -115,12 +98,11 @@ static struct Bounds guarded(struct Bounds left, struct Bounds right) {
   return (struct Bounds){smaller(right.low, 0.0), larger(right.high, 0.0)};
 }
 
-static struct Bounds of_vertex(const struct Model *model, Node node, const struct Bounds *indicators,
-                               const struct Bounds *found) {
+static struct Bounds of_vertex(const struct Model *model, Node node, const struct Bounds *found) {
   const struct Graph *graph = model->graph;
   const struct Vertex *vertex = &graph->vertices[node];
   if (vertex->operation == CONSTANT) return (struct Bounds){vertex->value, vertex->value};
-  if (vertex->operation == SYMBOL) return of_symbol(model, node, indicators);
+  if (vertex->operation == SYMBOL) return of_symbol(model, node);
   struct Bounds left = found[cone_slot(graph->cone, vertex->left)];
   if (operation_arity(vertex->operation) == 1) return of_function(vertex->operation, left);
   struct Bounds right = found[cone_slot(graph->cone, vertex->right)];
@@ -137,15 +119,22 @@ static struct Bounds of_vertex(const struct Model *model, Node node, const struc
   }
 }
 
-struct Bounds bounds_of(const struct Model *model, Node node, const struct Bounds *indicators) {
+struct Bounds bounds_of(const struct Model *model, Node node, const struct KnownBounds *known, size_t count) {
   struct Cone *cone = model->graph->cone;
   cone_collect(cone, model->graph, &node, 1);
   struct Bounds *found = allocate(cone->count, sizeof *found);
+  bool *is_known = allocate(cone->count, sizeof *is_known);
+  for (size_t i = 0; i < count; i++) {
+    if (!cone_has(cone, known[i].node)) continue;
+    found[cone_slot(cone, known[i].node)] = known[i].bounds;
+    is_known[cone_slot(cone, known[i].node)] = true;
+  }
   for (size_t i = 0; i < cone->count; i++) {
-    found[i] = of_vertex(model, cone->nodes[i], indicators, found);
+    if (!is_known[i]) found[i] = of_vertex(model, cone->nodes[i], found);
     if (isnan(found[i].low) || isnan(found[i].high)) found[i] = everything;
   }
   struct Bounds bounds = found[cone_slot(cone, node)];
+  release(is_known);
   release(found);
   return bounds;
 }

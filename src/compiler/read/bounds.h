@@ -11,8 +11,14 @@ struct Bounds {
   double low, high;
 };
 
+/* A node, and bounds of it that are known. */
+struct KnownBounds {
+  Node node;
+  struct Bounds bounds;
+};
+
 /*
- * Returns bounds of the values for all coordinates, velocities, states, times and inputs, and parameters in their ranges.
- * indicators: bounds of the indicators of all branches, whose signs are their modes; NULL for any signs.
+ * Returns bounds of the values for all coordinates, velocities, states, times and inputs, and parameters in their
+ * ranges. known[count]: bounds of nodes, which replace those by interval arithmetic.
  */
-struct Bounds bounds_of(const struct Model *model, Node node, const struct Bounds *indicators);
+struct Bounds bounds_of(const struct Model *model, Node node, const struct KnownBounds *known, size_t count);

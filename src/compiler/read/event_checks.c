@@ -6,6 +6,7 @@
 #include "algebra/cone.h"
 #include "base/memory.h"
 #include "read/bounds.h"
+#include "read/condition_outcomes.h"
 
 /* Samples of an expression: at the start, 1 s and 2 s later. */
 enum { TIMES = 3 };
@@ -147,31 +148,49 @@ static void warn_of_condition(const struct Reader *reader, const struct Event *e
                  event->text, at_start ? "holds at the start, and does not begin to hold later" : "never holds");
 }
 
-/* Warns of an expression that does not change its sign. */
-static void warn_of_sign(const struct Reader *reader, const struct Event *event) {
-  struct Bounds bounds = bounds_of(reader->model, event->expression, NULL);
-  if (bounds.low < 0.0 && bounds.high > 0.0) return;
-  report_warning(reader->diagnostics, event->line,
-                 "the event never happens: when=\"%s\" is never %s 0, so that it does not pass 0; expected an "
-                 "expression that changes its sign, or a condition such as x > 1",
-                 event->text, bounds.low < 0.0 ? "above" : "below");
+/* Returns bounds of a divisor. One of parameters keeps the sign that it has at the start. */
+static struct Bounds bounds_of_divisor(const struct Model *model, Node divisor) {
+  struct Bounds bounds = bounds_of(model, divisor, NULL, 0);
+  if ((model->graph->vertices[divisor].kinds & ~(1u << PARAMETER)) != 0) return bounds;
+  bool is_positive = graph_evaluate(model->graph, start_values(model))[divisor] > 0.0;
+  if (is_positive && bounds.low < 0.0) bounds.low = 0.0;
+  if (!is_positive && bounds.high > 0.0) bounds.high = 0.0;
+  return bounds;
 }
 
-/* Warns of a condition whose comparisons have one outcome for all values. False if there is no warning. */
+/* Returns bounds of an expression. mod(a, b) lies between 0 and b. */
+static struct Bounds bounds_with_remainders(const struct Model *model, Node expression) {
+  const struct Switches *switches = &model->switches;
+  struct KnownBounds *known = allocate(switches->remainder_count, sizeof *known);
+  size_t count = 0;
+  for (size_t i = 0; i < switches->remainder_count; i++) {
+    cone_collect(model->graph->cone, model->graph, &expression, 1);
+    if (!cone_has(model->graph->cone, switches->remainders[i].node)) continue;
+    struct Bounds divisor = bounds_of_divisor(model, switches->remainders[i].divisor);
+    known[count++] =
+        (struct KnownBounds){switches->remainders[i].node, {fmin(divisor.low, 0.0), fmax(divisor.high, 0.0)}};
+  }
+  return bounds_of(model, expression, known, count);
+}
+
+/* Warns of an expression that does not change its sign. */
+static void warn_of_sign(const struct Reader *reader, const struct Event *event, bool is_of_time) {
+  struct Bounds bounds = bounds_with_remainders(reader->model, event->expression);
+  if (bounds.low < 0.0 && bounds.high > 0.0) return;
+  report_warning(reader->diagnostics, event->line,
+                 "the event never happens: when=\"%s\" is never %s 0, so that it does not pass 0; expected %s",
+                 event->text, bounds.low < 0.0 ? "above" : "below",
+                 is_of_time ? "<sample every=\"...\"> for what happens periodically"
+                            : "an expression that changes its sign, or a condition such as x > 1");
+}
+
+/* Warns of a condition that has one outcome for all values. False if there is no warning. */
 static bool warn_of_outcome(const struct Reader *reader, const struct Event *event) {
-  const struct Model *model = reader->model;
-  size_t count = model->switches.branch_count;
-  struct Bounds *indicators = allocate(count, sizeof *indicators);
-  bool *is_used = allocate(count, sizeof *is_used);
-  cone_collect(model->graph->cone, model->graph, &event->condition, 1);
-  for (size_t i = 0; i < count; i++) is_used[i] = cone_has(model->graph->cone, model->switches.branches[i].mode);
-  for (size_t i = 0; i < count; i++)
-    if (is_used[i]) indicators[i] = bounds_of(model, model->switches.branches[i].indicator, NULL);
-  struct Bounds bounds = bounds_of(model, event->condition, indicators);
-  if (bounds.low <= 0.0 && bounds.high > 0.0) return false;
+  enum Outcome outcome = outcome_of(reader->model, event->condition);
+  if (outcome == OUTCOME_VARIES) return false;
   report_warning(reader->diagnostics, event->line,
                  "the event never happens: when=\"%s\" holds at %s; expected a condition that comes to hold",
-                 event->text, bounds.high > 0.0 ? "all times" : "no time");
+                 event->text, outcome == OUTCOME_ALWAYS ? "all times" : "no time");
   return true;
 }
 
@@ -182,7 +201,8 @@ void warn_of_events(const struct Reader *reader) {
     if (event->passage == PASSAGE_HOLDS && !warn_of_outcome(reader, event)) warn_of_condition(reader, event);
     if (event->expression == ZERO) continue;
     cone_collect(model->graph->cone, model->graph, &event->expression, 1);
-    if (count_switches(model) == 0 && is_alone(model, event)) warn_of_event(reader, event);
-    else warn_of_sign(reader, event);
+    bool is_of_time = is_alone(model, event);
+    if (is_of_time && count_switches(model) == 0) warn_of_event(reader, event);
+    else warn_of_sign(reader, event, is_of_time);
   }
 }

@@ -3,5 +3,8 @@
 
 #include "read/context/attributes.h"
 
-/* Warns of events whose expression depends only on time and never crosses zero in the event's direction. */
+/*
+ * Warns of events whose condition has one outcome, or whose expression keeps its sign, or depends only on time and does
+ * not cross zero in the event's direction.
+ */
 void warn_of_events(const struct Reader *reader);

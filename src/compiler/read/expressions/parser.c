@@ -9,6 +9,7 @@
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "model/switches.h"
 #include "read/expressions/calculus.h"
 #include "read/expressions/comparisons.h"
 #include "read/expressions/named_functions.h"
@@ -521,13 +522,14 @@ static struct Quantity condition_as_quantity(struct Parser *parser) {
 }
 
 /*
- * True if a node is a truth value that is constant between events: a mode, a state of contacts or frictions, or
- * if(...).
+ * True if a node is a truth value that is constant between events: a mode that is not the sign of an expression, a
+ * state of contacts or frictions, or if(...).
  */
 static bool is_truth(const struct Scope *scope, const char *text, Node node) {
   if (!graph_is_constant_in_time(scope->graph, node)) return false;
   bool is_choice = strncmp(text + strspn(text, " \t\r\n"), "if", 2) == 0 && graph_depends_on(scope->graph, node, MODE);
-  bool is_mode = scope->graph->vertices[node].operation == SYMBOL && graph_depends_on(scope->graph, node, MODE);
+  bool is_mode = scope->graph->vertices[node].operation == SYMBOL && graph_depends_on(scope->graph, node, MODE) &&
+                 branch_with_mode(scope->switches, node) == NULL;
   return is_choice || is_mode || (deciding_kinds(scope, node) & CONTACT_STATE) != 0;
 }
 

@@ -174,6 +174,13 @@ static Node floor_in_place(struct Parser *parser, Node node) {
   return is_value ? function(parser->graph, FLOOR, node, ZERO) : floor_of(parser->scope, node, current_line(parser));
 }
 
+/* Notes the expression of mod(a, divisor), of which checks know the range. */
+static void note_remainder(const struct Parser *parser, Node node, Node divisor) {
+  bool is_value = (parser->location.kinds & AT_INSTANT) != 0;
+  if (parser->scope->switches == NULL || is_value) return;
+  append_remainder(parser->scope->switches, (struct Remainder){node, divisor});
+}
+
 struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct Quantity a, struct Quantity b) {
   struct Graph *graph = parser->graph;
   struct Quantity result = {.dimension = dimension_one, .literal = a.literal};
@@ -183,6 +190,7 @@ struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct
     if (b.node == ZERO) FAIL(parser, "%s: mod(..., 0) has no value; expected another divisor", parser->location.what);
     Node whole = floor_in_place(parser, divide(graph, a.node, b.node));
     result.node = subtract(graph, a.node, multiply(graph, b.node, whole));
+    note_remainder(parser, result.node, b.node);
     return result;
   }
   require_dimensionless(parser, a, format_text("the argument of %s", name));
