@@ -77,8 +77,8 @@ struct ScalarVariable {
   bool is_reinitialized; /* a state that events or constraints may change */
   double start, minimum, maximum;
   /*
-   * For messages, the parameters on which a calculated parameter depends, or a state's start value that is an
-   * expression; NULL for all other variables.
+   * For messages, the parameters on which a calculated parameter depends, or the start value of a state or mode that
+   * is an expression; NULL for all other variables.
    */
   const char *follows_from;
 };
@@ -88,14 +88,15 @@ static inline bool is_calculated_parameter(const struct ScalarVariable *variable
   return variable->kind == VARIABLE_RESULT && variable->follows_from != NULL;
 }
 
-/* True for a state with a start value that depends on parameters; setting the state overrides it. */
+/* True for a state or mode with a start value that depends on parameters; setting the variable overrides it. */
 static inline bool has_following_start(const struct ScalarVariable *variable) {
-  return variable->kind == VARIABLE_STATE && variable->follows_from != NULL;
+  return (variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_MODE) && variable->follows_from != NULL;
 }
 
 /* True for a variable that may be read in initialization mode, and be an unknown of directional derivatives. */
 static inline bool is_unknown(const struct ScalarVariable *variable) {
-  return variable->is_output || variable->kind == VARIABLE_DERIVATIVE || variable->follows_from != NULL;
+  return variable->is_output || variable->kind == VARIABLE_DERIVATIVE ||
+         (variable->follows_from != NULL && variable->kind != VARIABLE_MODE);
 }
 
 /* True for a variable that has values within a communication step. */
@@ -477,12 +478,14 @@ struct Lagrangian {
    * only on parameters.
    */
   int (*prepare)(const Real *parameter, Real *parameter_constants);
+  const size_t *following; /* ascending indices of the variables with has_following_start(); NULL if there are none */
+  size_t following_count;
   /*
-   * Computes the elements of state[state_count] whose start values are expressions of parameters, and their derivatives
-   * along seed; leaves the others. Uses no parameter constants. NULL if there are none.
+   * Computes the start values value[following_count] of these variables, and their derivatives along seed. Uses no
+   * parameter constants. NULL if there are none.
    */
-  void (*initial_state)(const struct Point *point, Real *state);
-  void (*initial_state_along)(const struct Point *point, const struct Seed *seed, Real *state);
+  void (*initial_state)(const struct Point *point, Real *value);
+  void (*initial_state_along)(const struct Point *point, const struct Seed *seed, Real *value);
   /* derivative[state_count] = d state / dt */
   int (*derivatives)(const struct Point *point, Real *derivative);
   /* Computes the derivative of derivatives() along seed. */

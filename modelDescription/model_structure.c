@@ -40,16 +40,16 @@ struct Structure {
 
 /*
  * True if unknowns may depend on the variable. Initial unknowns depend on time, inputs, and variables with
- * initial="exact": parameters, modes, and states that initialization does not compute (FMI 2.0.4, section 2.2.8; FMI
- * 3.0.2, section 2.4.8).
+ * initial="exact": parameters, and modes and states that initialization does not compute (FMI 2.0.4, section 2.2.8;
+ * FMI 3.0.2, section 2.4.8).
  */
 static bool is_known(const struct InterfaceVariable *variable, bool initial) {
   switch (variable->entry.kind) {
   case VARIABLE_TIME:
   case VARIABLE_INPUT: return true;
   case VARIABLE_STATE: return !(initial && starts_nearby(variable));
-  case VARIABLE_PARAMETER:
-  case VARIABLE_MODE: return initial;
+  case VARIABLE_MODE: return initial && !starts_nearby(variable);
+  case VARIABLE_PARAMETER: return initial;
   default: return false;
   }
 }

@@ -28,15 +28,15 @@ void write_calculated(struct Page *page) {
 
 /* Writes start values that are expressions. */
 void write_starts(struct Page *page) {
-  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities,
-                                              &page->model->states};
+  const struct VariableList *const lists[] = {&page->model->coordinates, &page->model->velocities, &page->model->states,
+                                              &page->model->modes};
   size_t count = 0;
-  for (size_t list = 0; list < 3; list++)
+  for (size_t list = 0; list < 4; list++)
     for (size_t i = 0; i < lists[list]->count; i++) {
-      const struct Variable *state = &lists[list]->items[i];
-      if (!start_follows(page->model, state)) continue;
+      const struct Variable *started = &lists[list]->items[i];
+      if (!start_follows(page->model, started)) continue;
       if (count++ == 0) page_heading(page, "Start values of variables that are not set before the simulation");
-      if (count <= SHOWN_LIMIT) page_equation(page, state->name, state->start_expression);
+      if (count <= SHOWN_LIMIT) page_equation(page, started->name, started->start_expression);
     }
   page_rest(page, count, count < SHOWN_LIMIT ? count : SHOWN_LIMIT, "start values");
 }

@@ -60,15 +60,14 @@ static void set_following_starts(struct LaneGroup *group, Mask lanes) {
   const struct Ensemble *ensemble = group->ensemble;
   struct LaneSteps *steps = &group->steps;
   struct Point point = {.parameter = steps->parameter, .work = steps->point_work};
-  if (lagrangian.initial_state == NULL) return;
-  lagrangian.initial_state(&point, steps->state);
-  for (size_t i = 0; i < lagrangian.variable_count; i++) {
-    const struct ScalarVariable *variable = &lagrangian.variables[i];
-    bool follows = has_following_start(variable);
-    for (size_t j = 0; j < ensemble->varied_count; j++) follows &= ensemble->varied[j] != i;
-    if (!follows) continue;
-    Lanes *x = steps->x[variable->index];
-    x[0] = lanes_select(lanes, steps->state[variable->index], x[0]);
+  if (lagrangian.following_count == 0) return;
+  lagrangian.initial_state(&point, steps->start);
+  for (size_t i = 0; i < lagrangian.following_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[lagrangian.following[i]];
+    bool follows = true;
+    for (size_t j = 0; j < ensemble->varied_count; j++) follows &= ensemble->varied[j] != lagrangian.following[i];
+    Lanes *value = variable->kind == VARIABLE_STATE ? steps->x[variable->index] : &steps->parameter[variable->index];
+    if (follows) *value = lanes_select(lanes, steps->start[i], *value);
   }
 }
 

@@ -36,7 +36,7 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
   size_t series = states + inputs + lagrangian.taylor.rows;
   size_t rows = series * SERIES_LENGTH + lagrangian.parameter_count + lagrangian.parameter_constants_count +
-                lagrangian.work_count + inputs + 6 * states;
+                lagrangian.work_count + lagrangian.following_count + inputs + 6 * states;
   void *memory;
   Lanes *block = lane_rows(rows, &memory);
   if (block == NULL) return false;
@@ -52,6 +52,7 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
   steps->constants = take(&block, inputs);
   steps->low = take(&block, states);
   steps->unit = take(&block, states);
+  steps->start = take(&block, lagrangian.following_count);
   steps->derivative = take(&block, states);
   steps->change = take(&block, states);
   steps->state = take(&block, states);

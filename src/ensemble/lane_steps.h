@@ -25,6 +25,7 @@ struct LaneSteps {
   Lanes *derivative, *change; /* at the end of the step, from the defect check; see taylor.h */
   Lanes *state, *rate;        /* the state at which functions are evaluated, and scratch */
   Lanes *point_work;          /* workspace of generated functions */
+  Lanes *start;               /* of the variables of lagrangian.following: start values that follow from parameters */
   Mask is_limited;            /* the coefficients do not limit the step; a bound or a defect does */
   Lanes fast;                 /* number of consecutive steps, up to the last, that fast modes may have limited */
   Lanes path, steps;          /* of recent steps that the coefficients limit: sum of the state's changes, and number */

@@ -36,12 +36,12 @@ static int prepare(const double *parameter, double *parameter_constants) {
   return instructions_run(&frame, interpreter.code[FUNCTION_PREPARE]);
 }
 
-static void initial_state(const struct Point *point, double *state) {
-  fill(FUNCTION_INITIAL_STATE, point, NULL, state);
+static void initial_state(const struct Point *point, double *value) {
+  fill(FUNCTION_INITIAL_STATE, point, NULL, value);
 }
 
-static void initial_state_along(const struct Point *point, const struct Seed *seed, double *state) {
-  fill(FUNCTION_INITIAL_STATE_ALONG, point, seed, state);
+static void initial_state_along(const struct Point *point, const struct Seed *seed, double *value) {
+  fill(FUNCTION_INITIAL_STATE_ALONG, point, seed, value);
 }
 
 static int derivatives(const struct Point *point, double *derivative) {

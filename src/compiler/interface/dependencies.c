@@ -96,20 +96,28 @@ static void follow_acceleration(struct Dependencies *dependencies, size_t coordi
   for (size_t i = 0; i < list->count; i++) note(dependencies, list->numbers[i], DEPENDENT);
 }
 
-/* Adds the symbols in start values of the states that were found. */
+/* Returns the state or declared mode of a symbol; NULL for other symbols. */
+static const struct Variable *started_variable(const struct Model *model, const struct Symbol *symbol) {
+  switch (symbol->kind) {
+  case COORDINATE: return &model->coordinates.items[symbol->index];
+  case VELOCITY: return &model->velocities.items[symbol->index];
+  case STATE: return &model->states.items[symbol->index];
+  default: break;
+  }
+  for (size_t i = 0; symbol->kind == MODE && i < model->modes.count; i++)
+    if (model->modes.items[i].node == symbol->node) return &model->modes.items[i];
+  return NULL;
+}
+
+/* Adds the symbols in start values of the states and modes that were found. */
 static void follow_starts(struct Dependencies *dependencies) {
   const struct Model *model = dependencies->model;
   size_t found = dependencies->count;
   for (size_t i = 0; i < found; i++) {
     size_t number = dependencies->symbols[i];
-    const struct Symbol *symbol = &dependencies->graph->symbols[number];
-    const struct VariableList *list = symbol->kind == COORDINATE ? &model->coordinates
-                                      : symbol->kind == VELOCITY ? &model->velocities
-                                      : symbol->kind == STATE    ? &model->states
-                                                                 : NULL;
-    if (list == NULL) continue;
-    const struct Variable *state = &list->items[symbol->index];
-    if (start_follows(model, state)) descend(dependencies, state->start_expression, dependencies->of[number]);
+    const struct Variable *started = started_variable(model, &dependencies->graph->symbols[number]);
+    if (started != NULL && start_follows(model, started))
+      descend(dependencies, started->start_expression, dependencies->of[number]);
   }
 }
 

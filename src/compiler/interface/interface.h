@@ -11,7 +11,7 @@ struct InterfaceVariable {
   const char *display_unit;       /* NULL if none was given */
   double nominal;                 /* NAN if none was given */
   Node node;                      /* the value; ZERO for statistics */
-  Node start;                     /* of a state whose start value is an expression; else ZERO */
+  Node start;                     /* of a state or mode whose start value is an expression; else ZERO */
   bool is_moved_at_start;         /* a state that constraints may change at the end of initialization */
   bool is_continued;       /* a result that is evaluated together with the one before, as components of a vector */
   size_t array_count;      /* number of elements of the array that begins here; 0 for none */
@@ -31,7 +31,7 @@ struct Interface {
   int output_derivative_order;
 };
 
-/* True if initialization computes the state, from its start value among others. */
+/* True if initialization computes the state or mode, from its start value among others. */
 static inline bool starts_nearby(const struct InterfaceVariable *variable) {
   return has_following_start(&variable->entry) || variable->is_moved_at_start;
 }

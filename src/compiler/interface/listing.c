@@ -34,6 +34,13 @@ static char *names_below(const struct Model *model, Node node) {
   return symbol_names_text(&names, model->graph);
 }
 
+/* Sets the expression of a start value that follows from parameters. */
+static void follow_start(struct InterfaceVariable *variable, const struct Model *model, const struct Variable *source) {
+  if (!start_follows(model, source)) return;
+  variable->start = source->start_expression;
+  variable->entry.follows_from = names_below(model, source->start_expression);
+}
+
 static void append_list(struct Interface *interface, const struct Model *model, const struct VariableList *list,
                         enum VariableKind kind, size_t first_index) {
   for (size_t i = 0; i < list->count; i++) {
@@ -47,9 +54,7 @@ static void append_list(struct Interface *interface, const struct Model *model, 
     set_units(variable, source);
     variable->nominal = source->nominal;
     variable->node = source->node;
-    if (!start_follows(model, source)) continue;
-    variable->start = source->start_expression;
-    variable->entry.follows_from = names_below(model, source->start_expression);
+    follow_start(variable, model, source);
   }
 }
 
@@ -160,6 +165,7 @@ static void append_modes(struct Interface *interface, const struct Model *model)
         append_mode(interface, model, VARIABLE_MODE, mode->node, mode->name, mode->description);
     variable->entry.start = mode->start;
     set_units(variable, mode);
+    follow_start(variable, model, mode);
   }
   for (size_t i = 0; i < switches->contact_count; i++) {
     const char *constraint = model->constraints.items[switches->contacts[i].constraint].name;

@@ -53,7 +53,7 @@ static struct LinearizationSeries expansion_create(const struct Model *model) {
     for (size_t i = 0; i < lists[list]->count; i++)
       set_value(&expansion, lists[list]->items[i].node, point_of(model, lists[list]->items[i].node));
   for (size_t i = 0; i < model->modes.count; i++) /* which keep their start values */
-    set_value(&expansion, model->modes.items[i].node, graph_constant(graph, model->modes.items[i].start));
+    set_value(&expansion, model->modes.items[i].node, model->modes.items[i].start_expression);
   return expansion;
 }
 

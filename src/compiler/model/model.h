@@ -18,8 +18,8 @@ struct Variable {
   enum VariableType type;
   struct Dimension dimension;
   double start, minimum, maximum, nominal; /* NAN if none was given */
-  Node start_expression;                   /* of a state: the expression of its start value; ZERO for other variables */
-  Node node;                               /* its symbol, or the value of an output */
+  Node start_expression; /* of a state or mode: the expression of its start value; ZERO for other variables */
+  Node node;             /* its symbol, or the value of an output */
   Node shown;            /* of a definition: its expression on the page, with functions in place of pieces; else ZERO */
   Node rate;             /* of a <state>: its time derivative, which may contain accelerations and constraint forces */
   char *force_name;      /* of a constraint: name of its force if that is not NAME.force; else NULL */

@@ -194,18 +194,15 @@ static struct IrFunction *build_linear(const struct Program *program, struct Cod
 /* Builds start values or their directional derivatives. Uses no parameter constants, as prepare() may fail. */
 static struct IrFunction *build_starts(const struct Program *program, struct CodeGenerator *generator,
                                        const Node *nodes) {
-  const struct Interface *interface = program->interface;
   struct IrFunction *ir = generator_begin(generator);
-  size_t count = interface->state_count;
+  size_t count = program->expressions->initial.count;
   generator_compute(generator, nodes, count, true);
-  for (size_t i = 0; i < count; i++)
-    if (has_following_start(&interface->variables[interface_find(interface, VARIABLE_STATE, i)].entry))
-      generator_copy(generator, target_slot(i), nodes[i]);
+  for (size_t i = 0; i < count; i++) generator_copy(generator, target_slot(i), nodes[i]);
   return ir;
 }
 
 static struct IrFunction *build_initial_state(const struct Program *program, struct CodeGenerator *generator) {
-  return build_starts(program, generator, program->expressions->initial);
+  return build_starts(program, generator, program->expressions->initial.nodes);
 }
 
 static struct IrFunction *build_initial_state_along(const struct Program *program, struct CodeGenerator *generator) {
@@ -250,9 +247,7 @@ static struct IrFunction *build_switching_values(const struct Program *program, 
 }
 
 static bool starts_follow(const struct Program *program) {
-  bool any = false;
-  for (size_t i = 0; i < program->interface->state_count; i++) any |= program->expressions->initial[i] != ZERO;
-  return any;
+  return program->expressions->initial.count > 0;
 }
 
 static bool moves(const struct Program *program) {
@@ -312,10 +307,10 @@ const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
                           "const Real *p, Real *parameter_constants", "parameter_constants", RETURNS_STATUS,
                           IN_WORKSPACE, IN_LAGRANGIAN, NULL, build_prepare},
     [FUNCTION_INITIAL_STATE] = {"Start values that follow from parameters", "initial_state",
-                                "const struct Point *point, Real *state", "state", RETURNS_NOTHING, IN_WORKSPACE,
+                                "const struct Point *point, Real *value", "value", RETURNS_NOTHING, IN_WORKSPACE,
                                 IN_LAGRANGIAN, starts_follow, build_initial_state},
     [FUNCTION_INITIAL_STATE_ALONG] = {"Start values along a direction", "initial_state_along",
-                                      "const struct Point *point, const struct Seed *seed, Real *state", "state",
+                                      "const struct Point *point, const struct Seed *seed, Real *value", "value",
                                       RETURNS_NOTHING, IN_WORKSPACE, IN_LAGRANGIAN, starts_follow,
                                       build_initial_state_along},
     [FUNCTION_DERIVATIVES] = {"d state / dt", "derivatives", "const struct Point *point, Real *derivative",

@@ -198,6 +198,8 @@ static void write_lagrangian(FILE *file, const struct Program *program, const st
   fputs("    .variables = variables,\n", file);
   if (metadata->array_count > 0)
     fputs("    .arrays = arrays,\n    .array_count = sizeof arrays / sizeof *arrays,\n", file);
+  if (metadata->following_count > 0)
+    fputs("    .following = following,\n    .following_count = sizeof following / sizeof *following,\n", file);
   if (solver != NULL)
     fprintf(file, "    .steps.nominal = nominal,\n%s    .solver = &solver_%s,\n",
             metadata->coordinate_count > 0 ? "    .inertia_depends_on = inertia_depends_on,\n" : "", solver);
@@ -216,6 +218,8 @@ void description_write(FILE *file, const struct Program *program, size_t work_co
   struct Lagrangian metadata = metadata_of(program, work_count);
   write_variables(file, &metadata);
   write_arrays(file, &metadata);
+  if (metadata.following_count > 0)
+    write_sizes(file, "size_t", "following", metadata.following, metadata.following_count);
   if (metadata.results.count > 0)
     write_truths(file, "result_uses_acceleration", metadata.results.uses_acceleration, metadata.results.count);
   write_inertia_names(file, &metadata);

@@ -89,7 +89,7 @@ static enum Status derivative_along_seed(struct Instance *instance, const unsign
     const struct ScalarVariable *variable = check_reference(instance, unknown[i], TYPE_REAL);
     if (variable == NULL || check_unknown(instance, variable) != STATUS_DONE) return STATUS_ERROR;
   }
-  initial_state_add_along(instance, direction.parameter, direction.state, direction.derivative);
+  initial_state_add_along(instance, direction.state, direction.parameter);
   enum Status status = reading_follow_start(instance, &direction.seed, direction.state);
   if (status == STATUS_DONE) status = evaluate_prepare(instance);
   struct Point point = instance_point(instance);

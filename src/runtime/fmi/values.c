@@ -196,7 +196,7 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
     if (instance->fmu_state->changed == CHANGED_NOTHING) instance->fmu_state->changed = CHANGED_COURSE;
     return;
   }
-  if (variable->kind == VARIABLE_STATE && is_before_start(instance)) initial_state_set(instance, variable->index);
+  if (is_before_start(instance)) initial_state_set(instance, variable);
   double *target = variable->kind == VARIABLE_INPUT   ? &instance->input[variable->index]
                    : variable->kind == VARIABLE_STATE ? &instance->state[variable->index]
                                                       : &instance->parameter[variable->index];

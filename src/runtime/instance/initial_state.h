@@ -1,4 +1,7 @@
-/* States whose start values are expressions of parameters. Until the start they follow these, unless set themselves. */
+/*
+ * States and modes whose start values are expressions of parameters. Until the start they follow these, unless set
+ * themselves.
+ */
 #ifndef INITIAL_STATE_H
 #define INITIAL_STATE_H
 
@@ -9,14 +12,14 @@ static inline bool is_before_start(const struct Instance *instance) {
   return instance->fmu_state->phase == PHASE_INSTANTIATED || instance->fmu_state->phase == PHASE_INITIALIZATION;
 }
 
-/* Marks the state as set: it keeps its value until the next reset. */
-void initial_state_set(struct Instance *instance, size_t state);
+/* Marks a variable as set: it keeps its value until the next reset. */
+void initial_state_set(struct Instance *instance, const struct ScalarVariable *variable);
 
-/* Updates the states that follow from the parameters. */
+/* Updates the states and modes that follow from the parameters. */
 void initial_state_follow(struct Instance *instance);
 
-/* Adds to state[state_count] the directional derivative of states that follow from parameters. scratch: state_count. */
-void initial_state_add_along(struct Instance *instance, const double *parameter, double *state, double *scratch);
+/* Adds to state[] and parameter[] the directional derivatives of states and modes that follow from parameters. */
+void initial_state_add_along(struct Instance *instance, double *state, double *parameter);
 
 /* Checks that the start values are finite; an error names the state. */
 enum Status initial_state_check(struct Instance *instance);

@@ -7,12 +7,9 @@
 #include "instance/solver.h"
 #include "instance/event_laws.h"
 
-static size_t set_count(void) {
-  return lagrangian.initial_state != NULL ? lagrangian.state_count : 0;
-}
-
 static size_t value_count(void) {
-  return lagrangian.state_count + (1 + INPUT_ORDER) * lagrangian.input_count + lagrangian.parameter_count + set_count();
+  return lagrangian.state_count + (1 + INPUT_ORDER) * lagrangian.input_count + lagrangian.parameter_count +
+         lagrangian.following_count;
 }
 
 size_t fmu_state_size(void) {
@@ -58,9 +55,9 @@ static size_t switching_work_count(void) {
 }
 
 static size_t evaluation_count(void) {
-  return lagrangian.parameter_constants_count + lagrangian.work_count + projection_work_count() +
-         switching_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count + 3 * lagrangian.input_count +
-         lagrangian.parameter_count + 1;
+  return lagrangian.parameter_constants_count + lagrangian.work_count + lagrangian.following_count +
+         projection_work_count() + switching_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count +
+         3 * lagrangian.input_count + lagrangian.parameter_count + 1;
 }
 
 void instance_use(struct Instance *instance, struct FmuState *fmu_state) {
@@ -69,15 +66,16 @@ void instance_use(struct Instance *instance, struct FmuState *fmu_state) {
   instance->input = instance->state + lagrangian.state_count;
   instance->parameter = instance->input + lagrangian.input_count;
   instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
-  instance->state_was_set = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
-  instance->saved = instance->state_was_set + set_count();
+  instance->start_was_set = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
+  instance->saved = instance->start_was_set + lagrangian.following_count;
 }
 
 /* Divides a block of memory among the arrays. */
 static void lay_out(struct Instance *instance, double *evaluation) {
   instance->parameter_constants = evaluation;
   instance->point_work = instance->parameter_constants + lagrangian.parameter_constants_count;
-  instance->projection_work = instance->point_work + lagrangian.work_count;
+  instance->start_work = instance->point_work + lagrangian.work_count;
+  instance->projection_work = instance->start_work + lagrangian.following_count;
   instance->switching_work = instance->projection_work + projection_work_count();
   instance->acceleration = instance->switching_work + switching_work_count();
   if (lagrangian.event_laws != NULL)

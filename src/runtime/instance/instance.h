@@ -47,8 +47,8 @@ struct Span {
 /*
  * The snapshot: all that a saved state of the instance contains, in one block without pointers.
  *
- * values[] holds the state, the inputs, the parameters, and the inputs' derivatives of orders 1, 2 and 3. If start
- * values follow from parameters, flags follow: 1 for each state that was set. The solver's part comes last.
+ * values[] holds the state, the inputs, the parameters, and the inputs' derivatives of orders 1, 2 and 3. A flag
+ * follows for each variable of lagrangian.following: 1 if it was set. The solver's part comes last.
  */
 struct FmuState {
   int32_t phase; /* enum Phase */
@@ -99,7 +99,7 @@ struct Instance {
   struct FmuState *given, *shown;
   bool is_reading;     /* fmu_state holds the reported values, and shown those that were set */
   bool shown_is_found; /* the reported values were computed, and differ from those set */
-  double *state, *input, *parameter, *input_derivatives, *state_was_set; /* in fmu_state->values */
+  double *state, *input, *parameter, *input_derivatives, *start_was_set; /* in fmu_state->values */
   void *saved;                                                           /* the solver's part of fmu_state->values */
   double *largest_input; /* the largest magnitude that each input was set to */
   double *parameter_constants;
@@ -114,6 +114,7 @@ struct Instance {
   size_t violated_constraint;     /* 1 + the constraint that the last projection could not fulfil; 0 for none */
   const char *limited_by;         /* function that limited the solver's last step; NULL for none */
   double *work;                   /* of evaluations: 3 state_count + 2 input_count + parameter_count */
+  double *start_work;             /* of start values: lagrangian.following_count */
   double *point_work;             /* of generated functions: lagrangian.work_count */
   double *projection_work;        /* projection_work_count() */
   double *switching_work;         /* event_laws->work_count() */

@@ -24,7 +24,7 @@ struct Header {
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
 /* Version of the layout of snapshots; a change of struct FmuState or of a solver's part raises it. */
-enum { VERSION = 9 };
+enum { VERSION = 10 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + fmu_state_size();
@@ -73,10 +73,16 @@ static bool can_wait(const struct Instance *instance, const struct FmuState *fix
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
 }
 
-/* True if states may be without finite values: before the simulation, if their start values follow from parameters. */
-static bool may_lack_state(int32_t phase) {
-  return lagrangian.initial_state != NULL &&
-         (phase == PHASE_INSTANTIATED || phase == PHASE_INITIALIZATION || phase == PHASE_ERROR);
+/*
+ * True if the states and the parameters are finite. Before the simulation, states and modes may lack finite values if
+ * start values follow from parameters.
+ */
+static bool are_values(int32_t phase, const char *states, const char *parameters) {
+  bool is_early = phase == PHASE_INSTANTIATED || phase == PHASE_INITIALIZATION || phase == PHASE_ERROR;
+  bool may_lack = is_early && lagrangian.following_count > 0;
+  size_t modes = may_lack && lagrangian.switches != NULL ? lagrangian.switches->mode_count : 0;
+  return (may_lack || snapshot_is_finite(states, lagrangian.state_count)) &&
+         snapshot_is_finite(parameters, lagrangian.parameter_count - modes);
 }
 
 /* True if the flags and enums are in their ranges. */
@@ -144,7 +150,7 @@ static bool is_possible(const struct Instance *instance, const struct FmuState *
                             fixed->last_step.end, fixed->searched,       fixed->switched};
   size_t parameters = (size_t)((char *)instance->parameter - (char *)instance->fmu_state);
   size_t saved = (size_t)((char *)instance->saved - (char *)instance->fmu_state);
-  size_t was_set = (size_t)((char *)instance->state_was_set - (char *)instance->fmu_state);
+  size_t was_set = (size_t)((char *)instance->start_was_set - (char *)instance->fmu_state);
   return has_phase(instance, fixed->phase) && are_choices(fixed) && can_wait(instance, fixed) &&
          snapshot_are_counts(fixed->statistics, STATISTIC_COUNT) &&
          snapshot_are_counts(fixed->reported_statistics, STATISTIC_COUNT) &&
@@ -152,9 +158,8 @@ static bool is_possible(const struct Instance *instance, const struct FmuState *
          snapshot_is_finite(numbers, sizeof numbers / sizeof *numbers) && fixed->tolerance > 0.0 &&
          fixed->tolerance < 1.0 && fixed->suggested_step >= 0.0 && fixed->last_step.start <= fixed->last_step.end &&
          fixed->searched <= fixed->last_step.end &&
-         (may_lack_state(fixed->phase) || snapshot_is_finite(fmu_state + sizeof *fixed, lagrangian.state_count)) &&
-         are_flags(fmu_state + was_set, (saved - was_set) / sizeof(double)) &&
-         snapshot_is_finite(fmu_state + parameters, lagrangian.parameter_count) && have_types(fmu_state + parameters) &&
+         are_values(fixed->phase, fmu_state + sizeof *fixed, fmu_state + parameters) &&
+         are_flags(fmu_state + was_set, (saved - was_set) / sizeof(double)) && have_types(fmu_state + parameters) &&
          are_modes(fmu_state + parameters) && is_solver_part_valid(instance, fixed, fmu_state + saved);
 }
 

@@ -163,12 +163,11 @@ static void create_results(struct Expressions *expressions, const Node *seeds) {
 
 static void create_initial(struct Expressions *expressions, const Node *seeds) {
   const struct Interface *interface = expressions->interface;
-  size_t count = interface->state_count;
-  expressions->initial = allocate(count, sizeof(Node));
-  expressions->initial_along = allocate(count, sizeof(Node));
-  for (size_t i = 0; i < count; i++)
-    expressions->initial[i] = interface->variables[interface_find(interface, VARIABLE_STATE, i)].start;
-  derivative_along(expressions->model->graph, expressions->initial, count, seeds, expressions->initial_along);
+  struct NodeList *initial = &expressions->initial;
+  for (size_t i = 0; i < interface->count; i++)
+    if (has_following_start(&interface->variables[i].entry)) append_node(initial, interface->variables[i].start);
+  expressions->initial_along = allocate(initial->count, sizeof(Node));
+  derivative_along(expressions->model->graph, initial->nodes, initial->count, seeds, expressions->initial_along);
 }
 
 /* Rates of first-order states, and their derivatives, may depend on accelerations and forces found at run time. */

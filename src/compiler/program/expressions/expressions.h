@@ -60,7 +60,8 @@ struct Expressions {
   Node *unknowns, *unknowns_along;
   Node *rates_along;                    /* directional derivatives of the rates of the first-order states */
   struct JacobianExpressions *jacobian; /* NULL unless the method needs it */
-  Node *initial, *initial_along;        /* one for each state: its start value if that is an expression, else ZERO */
+  struct NodeList initial; /* start values that are expressions of parameters, in the order of their variables */
+  Node *initial_along;
   /* one for each result; result_along is ZERO unless it is an output or a calculated parameter */
   Node *result, *result_along;
   struct WeightedGradient *weighted_gradient; /* NULL unless requested, and if K is not symmetric */

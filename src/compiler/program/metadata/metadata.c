@@ -29,6 +29,13 @@ static void add_arrays(struct Lagrangian *metadata, const struct Interface *inte
   if (metadata->array_count > 0) metadata->arrays = arrays;
 }
 
+static void add_following(struct Lagrangian *metadata, const struct Interface *interface) {
+  size_t *following = allocate(interface->count, sizeof *following);
+  for (size_t i = 0; i < interface->count; i++)
+    if (has_following_start(&interface->variables[i].entry)) following[metadata->following_count++] = i;
+  if (metadata->following_count > 0) metadata->following = following;
+}
+
 static const bool *uses_of_acceleration(const struct Program *program, size_t count) {
   bool *uses = allocate(count, sizeof *uses);
   for (size_t i = 0; i < count; i++)
@@ -106,5 +113,6 @@ struct Lagrangian metadata_of(const struct Program *program, size_t work_count) 
       .implicit = implicit_metadata_of(program),
       .constraints = constraint_metadata_of(program)};
   add_arrays(&metadata, interface);
+  add_following(&metadata, interface);
   return metadata;
 }

@@ -116,14 +116,6 @@ static double nominal_attribute(struct Reader *reader, xmlNodePtr node, const ch
   return nominal;
 }
 
-/* Returns a start value that is a plain number, else 0, for integrals, which precede the start expressions. */
-static double plain_number(xmlNodePtr node, const char *name) {
-  const char *text = attribute(node, name);
-  char *end = NULL;
-  double number = text != NULL ? strtod(text, &end) : 0.0;
-  return end != NULL && *end == '\0' && isfinite(number) ? number : 0.0;
-}
-
 static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable position = common_attributes(reader, node);
@@ -134,8 +126,8 @@ static void read_coordinate(struct Reader *reader, xmlNodePtr node) {
   if (velocity.name == NULL) velocity.name = copy_text("?");
   overrides_of(reader, node, position.name); /* marks overrides as used; start_expressions.c reads them */
   if (velocity.description == NULL) velocity.description = format_text("velocity of %s", position.name);
-  position.start = plain_number(node, "start"); /* preliminary, see start_expressions.h */
-  velocity.start = plain_number(node, "velocityStart");
+  position.start = preliminary_start(node, "start");
+  velocity.start = preliminary_start(node, "velocityStart");
   char *fixed = attribute(node, "fixed");
   position.is_fixed = fixed != NULL && (strcmp(fixed, "true") == 0 || strcmp(fixed, "1") == 0);
   position.nominal = nominal_attribute(reader, node, "nominal");
@@ -362,7 +354,7 @@ static const struct ElementReaders elements[] = {
     {"joint", declare_joint, collect_joint, NULL, read_joint, NULL, false},
     {"kinetic", NULL, NULL, NULL, read_kinetic, NULL, false},
     {"line", NULL, NULL, NULL, NULL, read_line, false},
-    {"mode", declare_mode, NULL, NULL, NULL, NULL, false},
+    {"mode", declare_mode, NULL, read_start_of_mode, NULL, NULL, false},
     {"output", NULL, NULL, NULL, read_output, NULL, false},
     {"parameter", read_parameter, collect_value, NULL, NULL, NULL, false},
     {"particle", number_body, collect_components, read_body, NULL, NULL, false},

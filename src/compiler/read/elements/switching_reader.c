@@ -7,7 +7,9 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/context/constraint_checks.h"
+#include "read/context/includes.h"
 #include "read/context/variables.h"
+#include "read/elements/start_expressions.h"
 #include "read/shapes/shape_contacts.h"
 #include "read/space/forces.h"
 
@@ -33,8 +35,9 @@ static Node new_reported_mode(struct Reader *reader, const struct Variable *cons
 void declare_mode(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Variable mode = common_attributes(reader, node);
-  mode.start = 0.0;
-  number_attribute(reader, node, "start", &mode.start);
+  overrides_of(reader, node, mode.name); /* marks overrides as used; start_expressions.c reads them */
+  mode.start = preliminary_start(node, "start");
+  reader->present->number = model->modes.count;
   int index = (int)model->switches.mode_count++;
   struct Dimension dimension = mode.unit != NULL ? mode.dimension : dimension_one;
   mode.node = scope_symbol(reader->scope, MODE, index, mode.name, dimension, mode.line);
