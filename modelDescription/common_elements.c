@@ -113,6 +113,30 @@ static void write_presets(xmlTextWriterPtr writer, const struct Model *model) {
   xmlTextWriterEndElement(writer);
 }
 
+static void write_task(xmlTextWriterPtr writer, const struct Task *task) {
+  xmlTextWriterStartElement(writer, BAD_CAST "task");
+  write_attribute(writer, "name", task->name);
+  if (task->description != NULL) write_attribute(writer, "description", task->description);
+  if (task->preset != NULL) write_attribute(writer, "preset", task->preset);
+  write_number(writer, "hold", task->hold);
+  if (isfinite(task->limit)) write_number(writer, "limit", task->limit);
+  for (size_t i = 0; i < task->count; i++) {
+    const struct Goal *goal = &task->goals[i];
+    xmlTextWriterStartElement(writer, BAD_CAST "goal");
+    if (isfinite(goal->minimum)) write_number(writer, "min", goal->minimum);
+    if (isfinite(goal->maximum)) write_number(writer, "max", goal->maximum);
+    write_attribute(writer, "formula", goal->formula);
+    xmlTextWriterEndElement(writer);
+  }
+  xmlTextWriterEndElement(writer);
+}
+
+static void write_tasks(xmlTextWriterPtr writer, const struct Model *model) {
+  xmlTextWriterStartElement(writer, BAD_CAST "tasks");
+  for (size_t i = 0; i < model->task_count; i++) write_task(writer, &model->tasks[i]);
+  xmlTextWriterEndElement(writer);
+}
+
 void write_annotations(xmlTextWriterPtr writer, const struct Model *model, const char *all, const char *each,
                        const char *attribute) {
   const struct {
@@ -120,8 +144,9 @@ void write_annotations(xmlTextWriterPtr writer, const struct Model *model, const
     const char *name;
     void (*write)(xmlTextWriterPtr writer, const struct Model *model);
   } annotations[] = {{has_scene(model), "lagrange-fmu", scene_write},
-                     {model->preset_count > 0, "lagrange-fmu.presets", write_presets}};
-  if (!annotations[0].exists && !annotations[1].exists) return;
+                     {model->preset_count > 0, "lagrange-fmu.presets", write_presets},
+                     {model->task_count > 0, "lagrange-fmu.tasks", write_tasks}};
+  if (!annotations[0].exists && !annotations[1].exists && !annotations[2].exists) return;
   xmlTextWriterStartElement(writer, BAD_CAST all);
   for (size_t i = 0; i < sizeof annotations / sizeof *annotations; i++) {
     if (!annotations[i].exists) continue;

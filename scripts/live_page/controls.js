@@ -1,13 +1,20 @@
 // Sliders of parameters, inputs and start values.
 "use strict";
 
+// Returns the size of an input in this unit, from the weights of masses and the longest length among the parameters; 1 where they say nothing.
+function naturalSize(unit) {
+  const startsIn = (wanted) => description.variables.filter(({ role, unit }) => role === "parameter" && unit === wanted).map(({ start }) => Math.abs(start));
+  const weight = 10 * startsIn("kg").reduce((sum, mass) => sum + mass, 0), length = Math.max(...startsIn("m"), 0) || 1;
+  return Number({ N: weight, "N.m": weight * length }[unit]?.toPrecision(1)) || 1;
+}
+
 // Returns the range of a slider: [low, high, true for a logarithmic scale].
 function rangeOf({ start, min, max, unit }) {
   const low = min ?? -Infinity, high = max ?? Infinity;
   if (isFinite(low) && isFinite(high)) return [low, high, low > 0 && high / low >= 100];
   if (unit === "rad") return [Math.max(low, Math.min(-Math.PI, start)), Math.min(high, Math.max(Math.PI, start)), false];
   if (start > 0) return [Math.max(low, start / 10), Math.min(high, start * 10), low >= 0 || !isFinite(low)];
-  const size = 2 * Math.abs(start) || 1;
+  const size = 2 * Math.abs(start) || naturalSize(unit);
   return [Math.max(low, -size), Math.min(high, size), false];
 }
 
@@ -15,7 +22,7 @@ class Control {
   // variable: name, unit, description, start, min, max, type; onChange(value) is called for each new value.
   constructor(variable, onChange) {
     this.variable = variable;
-    this.value = variable.start;
+    this.value = this.idle = variable.start; // idle: the value of an input without keys
     [this.low, this.high, this.isLogarithmic] = rangeOf(variable);
     this.element = document.createElement("div");
     this.element.className = "control";

@@ -104,6 +104,7 @@ const handlers = {
     viewed = null;
     $("timeline").max = Math.max(0, history.length - 1);
     $("timeline").value = $("timeline").max;
+    judge(times, rows, isFresh);
   },
   section({ times, rows }) {
     times.forEach((time, i) => sections.add(time, rows[i]));
@@ -181,6 +182,7 @@ function addControls() {
 function set(index, value) {
   send("set", { index, value });
   const { role, isFixed } = description.variables[index];
+  if (task && role !== "input") endTask("ended, since a value was changed that is no input");
   if ((role !== "start" && !isFixed) || resetTimer !== null) return;
   // Takes effect at the next start; before the first step the FMU is reset at once.
   if (history.length <= 1) resetTimer = setTimeout(() => send("reset"), 50);
@@ -360,6 +362,7 @@ async function begin() {
   if (laboratory) showTitle();
   if (!recording) {
     addControls();
+    addTasks();
     addPresets();
     addLinearization();
   }

@@ -15,7 +15,7 @@ function presetsOf(file, description) {
 function applyPreset({ values }) {
   const presetValues = new Map(values);
   for (const [index, control] of controls) {
-    const value = presetValues.get(index) ?? control.variable.start;
+    const value = (control.idle = presetValues.get(index) ?? control.variable.start);
     if (value !== control.value) control.choose(value, (chosen) => send("set", { index, value: chosen }));
   }
   send("reset");

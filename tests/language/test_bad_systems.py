@@ -225,7 +225,7 @@ CASES = [
     ("attribute of an energy", 8, '<potential name="U">m*g*bob.y</potential>', 8, "<potential> has no attribute 'name'; expected none"),
     ("element in upper case", 2, '<Parameter name="m" start="1"/>', 2, "<Parameter> is not an element of <system>; did you mean 'parameter'"),
     ("element of another language", 8, "<lagrangian>-m*g*bob.y</lagrangian>", 8, "<lagrangian> is not an element of <system>; write .*<kinetic> and <potential>"),
-    ("element that is unknown", 8, "<rope/>", 8, "<rope> is not an element of <system>; expected constant, parameter, .* work, solver, experiment or preset"),
+    ("element that is unknown", 8, "<rope/>", 8, "<rope> is not an element of <system>; expected constant, parameter, .* work, solver, experiment, preset or task"),
     ("element that stands elsewhere", 12, '<for index="i" from="1" to="2"><experiment/></for>', 12,
      "<experiment> cannot stand in <for>; expected constant, .*, output, for or include$"),
     ("element in an element without content", 7, '<particle name="bob" mass="m" y="l*cos(theta)"><potential>m*g*bob.y</potential></particle>', 7,

@@ -210,6 +210,21 @@ struct Preset {
   size_t count;
 };
 
+/* A condition of a task: the value of an expression lies between two numbers in its unit, one of which may be infinite. */
+struct Goal {
+  const char *formula; /* of variables of the FMU */
+  double minimum, maximum;
+};
+
+/* Something that users try to reach by inputs: all goals at once, for some time. */
+struct Task {
+  const char *name, *description; /* description: NULL if none was given */
+  const char *preset;             /* name of the preset from which it starts; NULL for the start values */
+  struct Goal *goals;             /* at least one */
+  size_t count;
+  double hold, limit; /* s: how long the goals must be met, and until when; limit is infinite if none was given */
+};
+
 /* The content of a system. Lists keep the order of declaration. */
 struct Model {
   char *name, *description;
@@ -242,6 +257,8 @@ struct Model {
   struct Experiment experiment;
   struct Preset *presets;
   size_t preset_count;
+  struct Task *tasks;
+  size_t task_count;
 };
 
 /* Returns the index of a coordinate, velocity or first-order state in the state; of other symbols, their index. */

@@ -122,7 +122,7 @@ static struct Scope *language_of(struct Model *model, struct Diagnostics *diagno
 }
 
 static void read_drawing(struct Reader *reader) {
-  if (reader->diagnostics->errors > 0 || !has_lines(reader)) return;
+  if (reader->diagnostics->errors > 0 || !has_drawing(reader)) return;
   struct Scope *scope = begin_drawing(reader);
   read_expanded(reader, DRAWING);
   end_drawing(reader, scope);

@@ -14,6 +14,7 @@
 #include "read/elements/named_expressions.h"
 #include "read/elements/parameters.h"
 #include "read/context/preset_reader.h"
+#include "read/context/task_reader.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "read/elements/table_reader.h"
@@ -368,6 +369,7 @@ static const struct ElementReaders elements[] = {
     {"state", read_state, collect_rate, read_start_of_state, NULL, NULL, false},
     {"stop", declare_stop, NULL, NULL, read_stop, NULL, false},
     {"table", read_table, NULL, NULL, NULL, NULL, false},
+    {"task", NULL, NULL, NULL, NULL, read_task, true},
     {"torque", NULL, NULL, NULL, read_torque, NULL, false},
     {"work", read_work, NULL, NULL, NULL, NULL, true},
 };

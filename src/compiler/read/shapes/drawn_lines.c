@@ -139,11 +139,11 @@ void read_line(struct Reader *reader, xmlNodePtr node) {
   keep_line(&reader->model->drawing, line);
 }
 
-bool has_lines(const struct Reader *reader) {
+bool has_drawing(const struct Reader *reader) {
   bool has = false;
   for (size_t i = 0; i < reader->occurrence_count; i++) {
     const xmlNode *node = reader->occurrences[i].node;
-    has |= is_element(node, "line") || is_element(node, "spring");
+    has |= is_element(node, "line") || is_element(node, "spring") || is_element(node, "task");
   }
   return has;
 }

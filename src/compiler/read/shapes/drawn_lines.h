@@ -13,5 +13,5 @@ void draw_spring(struct Reader *reader, xmlNodePtr node);
 struct Scope *begin_drawing(struct Reader *reader);
 void end_drawing(struct Reader *reader, struct Scope *scope);
 
-/* True if the system has a <line> or <spring>. */
-bool has_lines(const struct Reader *reader);
+/* True if the system has an element that is read in the pass DRAWING: a <line>, <spring> or <task>. */
+bool has_drawing(const struct Reader *reader);

@@ -1,0 +1,7 @@
+/* <task>: something that users of a page try to reach by inputs. */
+#pragma once
+
+#include "read/context/attributes.h"
+
+/* Reads a task with its goals, in the pass DRAWING, after all presets. Reports goals without limits and unknown presets. */
+void read_task(struct Reader *reader, xmlNodePtr node);

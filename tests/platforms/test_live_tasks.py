@@ -1,0 +1,63 @@
+"""Tasks in live pages: measured from samples, and ended by what is no input."""
+
+import re
+
+import numpy as np
+import pytest
+
+import fmu
+from driven_chromium import chromium, opened
+from scripts.live_page.page import page_of
+
+# A driver of the crane: speeds in proportion to the distances that are left, set by the number fields.
+DRIVE = """() => {
+  const fieldOf = (name) => document.querySelector(`input[type=number][aria-label=${name}]`), valueOf = (name) => live.history.samples.at(-1)[0][live.names.indexOf(name)];
+  const choose = (name, value) => {
+    fieldOf(name).value = String(Math.max(-0.8, Math.min(0.8, value)).toFixed(3));
+    fieldOf(name).dispatchEvent(new Event("change"));
+  };
+  window.driver = setInterval(() => {
+    choose("trolleySpeed", 0.3 * (15 - valueOf("x")));
+    choose("hoistSpeed", 0.5 * (10 - valueOf("l")));
+  }, 20);
+}"""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture(scope="module")
+def crane(tmp_path_factory):
+    file = tmp_path_factory.mktemp("live") / "GantryCrane.html"
+    file.write_text(page_of(fmu.archive("GantryCrane")), encoding="utf-8")
+    return file
+
+
+def test_a_load_is_delivered(browser, crane):
+    """The task starts from its preset, and is done at the end of the first 2 s in which the load hangs at rest at its place."""
+    with opened(browser, crane) as page:
+        page.get_by_role("spinbutton", name="m", exact=True).fill("300")
+        page.get_by_role("spinbutton", name="m", exact=True).press("Enter")
+        page.fill("#speed", "1")
+        page.click("text=Bring the load to rest")
+        page.evaluate(DRIVE)
+        page.wait_for_function("document.querySelector('.tasks div').textContent.startsWith('done')", timeout=60000)
+        page.evaluate("clearInterval(driver)")
+        text, names = page.inner_text(".tasks div"), page.evaluate("live.names")
+        times, samples = page.evaluate("[live.history.times, live.history.samples.map(([run]) => [...run])]")
+        assert page.get_by_role("spinbutton", name="m", exact=True).input_value() == "1500"
+        done = float(re.fullmatch(r"done in ([0-9.]+) s; best ([0-9.]+) s", text)[1])
+        page.click("text=Bring the load to rest")
+        page.get_by_role("spinbutton", name="m", exact=True).fill("300")
+        page.get_by_role("spinbutton", name="m", exact=True).press("Enter")
+        assert page.inner_text(".tasks div") == f"ended, since a value was changed that is no input; best {done:.2f} s"
+    x, length, theta, v, w, omega = (np.array(samples)[:, names.index(name)] for name in ("x", "l", "theta", "v", "w", "omega"))
+    speed = v + w * np.sin(theta) + length * omega * np.cos(theta)
+    met = (np.abs(x + length * np.sin(theta) - 15) <= 0.3) & (np.abs(length * np.cos(theta) - 10) <= 0.3) & (np.abs(speed) <= 0.15)
+    times = np.array(times)
+    assert met[(times > done - 2 - 1e-6) & (times < done + 1e-6)].all()
+    first = times[np.flatnonzero(~met & (times < done))[-1] + 1]
+    assert done - first == pytest.approx(2, abs=0.2)
