@@ -3,7 +3,7 @@
 
 const AXES = ["x", "y", "z"];
 const TRAIL_LENGTH = 240; // samples of a trail
-const FAR = 5; // times its own size: a system that travels further is followed by the view
+const FAR = 4; // times its own size: a system that travels further is followed by the view
 const MOST_TRAILS = 8; // with more moving elements only the last one has a trail
 
 // True for a body in the plane, which has a single moment of inertia.

@@ -68,17 +68,20 @@ def test_feet_and_slope_of_the_walker(tmp_path):
     """At the strike of the symmetric posture both feet are on the slope, a step 2 l sin(angle/2) apart."""
     slope, half, l = 0.05, 0.3, 1.0
     stance, swing = half - slope, -half - slope
-    values = {"a": 0.5, "b": 0.5, "slope": slope, "thetaStance": stance, "thetaSwing": swing, "hip": None}
+    values = {"a": 0.5, "b": 0.5, "slope": slope, "thetaStance": stance, "thetaSwing": swing, "hip": None, "foot": 0.7}
+    standing = (0.7, -0.7 * math.tan(slope))
     drawn = kinds("PassiveWalker", tmp_path)
-    hip = (-l * math.sin(stance), l * math.cos(stance))
+    hip = (standing[0] - l * math.sin(stance), standing[1] + l * math.cos(stance))
     class Point:
         x, y = hip
     foot = position(drawn["rod"][1], 2, values | {"hip": Point})[:2]
-    assert (drawn["rod"][0]["from"], drawn["rod"][0]["to"], drawn["rod"][1]["from"]) == ("", "hip", "hip")
+    assert (drawn["rod"][0]["to"], drawn["rod"][1]["from"]) == ("hip", "hip")
+    assert position(drawn["rod"][0], 1, values)[:2] == pytest.approx(standing)
     # The swing leg is at -half - slope: it trails by 2*half.
-    assert foot == pytest.approx([-2 * l * math.sin(half) * math.cos(slope), 2 * l * math.sin(half) * math.sin(slope)])
+    assert foot == pytest.approx([standing[0] - 2 * l * math.sin(half) * math.cos(slope), standing[1] + 2 * l * math.sin(half) * math.sin(slope)])
     left, right = (position(drawn["ground"][0], end, values) for end in (1, 2))
     assert math.atan2(left[1] - right[1], right[0] - left[0]) == pytest.approx(slope)
+    assert left[1] == pytest.approx(-left[0] * math.tan(slope))
 
 
 def test_threads_of_the_cradle(tmp_path):
