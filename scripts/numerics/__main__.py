@@ -11,7 +11,7 @@ import realtime
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
 from html_page import bullets, folded, page, paragraphs, table, write_csv
-from numerics import footprint
+from numerics import footprint, validation
 from numerics.failures import failure
 from numerics.mechanisms import comparison as mechanisms
 from numerics.overview import Run, overview
@@ -222,8 +222,37 @@ def references_section(quick, progress):
     return Section([], paragraphs([text]) + table(header, rows))
 
 
+def validation_section(quick, progress):
+    rows, failures = [], []
+    for case in validation.cases(quick):
+        try:
+            rows.append(validation.row_of(case))
+        except Exception as error:
+            failures.append(failure(case.system, error))
+        progress(f"validation, {case.system}")
+    write_csv(FOLDER / "validation.csv", validation.HEADER, rows)
+    wrong = [row[0] for row in rows if validation.is_wrong(row)]
+    but = f", but not {', '.join(wrong)}" if wrong else ""
+    sentence = f"{len(rows)} motions with a known solution: {len(rows) - len(wrong)} within {validation.LARGEST:g} times the tolerance{but}."
+    text = (f"Each FMU as shipped, at its own tolerance, in {validation.POINTS} communication steps. The error is the largest of all compared variables at all "
+            "communication points, relative for values above 1. The time is that of the whole run.")  # fmt: skip
+    return Section([sentence], paragraphs([sentence, *failures, text]) + table(validation.HEADER, rows), len(wrong))
+
+
+def settings_of_peers(samples):
+    """Return a table of the settings of which the fastest sufficient one counts, and what "never" means."""
+    fmu = sorted({s.tolerance for s in samples if s.method == "shipped"}, reverse=True)
+    rows = [["FMU, with each method", "tolerance", ", ".join(f"{value:g}" for value in fmu)]]
+    for peer, (_, settings, _) in PEERS.items():
+        used = {s.tolerance for s in samples if s.method == peer}
+        kind = "step in s" if peer.startswith("MuJoCo") else "relative and absolute tolerance"
+        rows += [[peer, kind, ", ".join(f"{value:g}" for value in settings if value in used)]] if used else []
+    text = "The fastest run that reaches the error counts. \"never\": no run with the settings of this table reaches it."
+    return paragraphs([text]) + table(["program", "setting", "values"], rows)
+
+
 def ratio_tables(samples):
-    content = ""
+    content = settings_of_peers(samples)
     for level in work_precision.LEVELS:
         rows = work_precision.ratios(samples, level)
         systems = list(dict.fromkeys(s.system for s in samples))
@@ -246,7 +275,7 @@ def missing_peers(samples, peers=PEERS):
     return [f"Not installed here, or without a result: {', '.join(absent)}."] if absent else []
 
 
-SECTIONS = [("Error against run time", error_section), ("Stiff systems", stiff_section), ("Mechanisms", mechanisms_section),
+SECTIONS = [("Validation", validation_section), ("Error against run time", error_section), ("Stiff systems", stiff_section), ("Mechanisms", mechanisms_section),
             ("Switching", switching_section), ("Bodies that touch", touching_section),
             ("Stiff and extreme cases", stability_section), ("Energy over long runs", energy_section),
             ("Single steps", steps_section), ("Left out", left_out_section),
@@ -280,7 +309,7 @@ def main(words=None):
     quick = parser.parse_args(words).quick
     FOLDER.mkdir(parents=True, exist_ok=True)
     count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 2 + len(switching.PROBLEMS) + len(switching.GROWING)
-    progress, sections = Progress(count + len(stepped(quick)) + 3 + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
+    progress, sections = Progress(count + len(validation.cases(quick)) + len(stepped(quick)) + 3 + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
     for title, section in SECTIONS:
         sections[title] = attempt(title, section, quick, progress)
         write_page(sections)
@@ -289,7 +318,7 @@ def main(words=None):
     print(f"report  {FOLDER / 'index.html'}")
     wrong = sum(section.wrong for section in sections.values())
     if wrong:
-        print(f"scripts/report: {wrong} results are wrong, see 'Stiff and extreme cases'", file=sys.stderr)
+        print(f"scripts/report: {wrong} results are wrong, see 'Validation' and 'Stiff and extreme cases'", file=sys.stderr)
     return 1 if wrong else 0
 
 
