@@ -13,7 +13,7 @@ from scripts.live_page.page import page_of
 
 FRAMES_PER_SECOND = 16
 WIDTH, HEIGHT = 240, 240  # of a scene, in pixels
-COLORS = 32
+COLORS = 48
 SYSTEMS = {"NewtonsCradle": {}, "DoublePendulum": {"theta1": 2.0, "theta2": 2.5}, "PassiveWalker": {}}
 
 # Only the scene is shown, in one size.
@@ -43,6 +43,14 @@ def frames_of(browser, file, times):
     return pictures
 
 
+def beside(pictures):
+    """Return the pictures in one row."""
+    row = Image.new("RGB", (WIDTH * len(pictures), HEIGHT), "white")
+    for i, picture in enumerate(pictures):
+        row.paste(picture, (i * WIDTH, 0))
+    return row
+
+
 def main():
     folder, path = Path(sys.argv[1]), Path(sys.argv[2])
     seconds = float(sys.argv[3]) if len(sys.argv) > 3 else 5.0
@@ -55,13 +63,10 @@ def main():
             file.write_text(page_of(folder / f"{name}.fmu", None, settings), encoding="utf-8")
             scenes.append(frames_of(browser, file, times))
         browser.close()
-    rows = []
-    for pictures in zip(*scenes, strict=True):
-        row = Image.new("RGB", (sum(picture.width for picture in pictures), HEIGHT), "white")
-        for i, picture in enumerate(pictures):
-            row.paste(picture, (i * pictures[0].width, 0))
-        rows.append(row.quantize(COLORS))
-    rows[0].save(path, save_all=True, append_images=rows[1:], duration=1000 // FRAMES_PER_SECOND, loop=0)
+    rows = [beside(pictures) for pictures in zip(*scenes, strict=True)]
+    palette = rows[-1].quantize(COLORS)  # one for all frames, so that colors do not flicker
+    frames = [row.quantize(palette=palette, dither=Image.Dither.NONE) for row in rows]
+    frames[0].save(path, save_all=True, append_images=frames[1:], duration=1000 // FRAMES_PER_SECOND, loop=0)
 
 
 if __name__ == "__main__":
