@@ -59,7 +59,7 @@ class Control {
 
   show() {
     const { low, high, value } = this;
-    this.number.value = String(value);
+    this.number.value = Math.abs(value) >= 1e7 ? value.toExponential() : String(value);
     const share = this.isLogarithmic ? Math.log(Math.max(value, low) / low) / Math.log(high / low) : (value - low) / (high - low);
     this.slider.value = String(1000 * Math.min(1, Math.max(0, share)));
   }

@@ -1,6 +1,7 @@
 // The page: shows the samples of the FMU, which runs in the worker, and sends it the user's settings; or plays a recording.
 "use strict";
 
+const [SHORT, LONG, SHOWN_FOR] = [2, 100, 5]; // s: an experiment outside of these durations begins at a speed at which it is shown for some seconds
 const GHOST = 1e-9; // difference of the ghost's first start value
 // Functions of formulas that Math of JavaScript has, too.
 const FUNCTIONS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "pow", "abs", "sign", "min", "max", "floor", "ceil"];
@@ -358,7 +359,14 @@ function addEnergyBar() {
   $("energies").hidden = false;
 }
 
+// Chooses the speed at which an experiment that is short or long lasts some seconds, as far as the slider goes.
+function setInitialSpeed() {
+  const { duration } = description, { min, max } = $("speed");
+  if (duration < SHORT || duration > LONG) $("speed").value = Math.max(min, Math.min(max, Math.log10(duration / SHOWN_FOR)));
+}
+
 async function begin() {
+  if (!recording) setInitialSpeed();
   if (laboratory) showTitle();
   if (!recording) {
     addControls();

@@ -2,6 +2,7 @@
 "use strict";
 
 const AXES = ["x", "y", "z"];
+const CORNERS = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => [x, y, z]))); // signs of the coordinates of a box's corners
 const TRAIL_LENGTH = 240; // samples of a trail
 const FAR = 4; // times its own size: a system that travels further is followed by the view
 const MOST_TRAILS = 8; // with more moving elements only the last one has a trail
@@ -132,7 +133,7 @@ class Scene {
     this.evaluate();
     this.plane = this.findPlane(samples, times);
     this.up = this.upDirection();
-    this.shapeRadii = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, radius: this.boundingRadius(shape) }));
+    this.shapeCorners = this.shapes.filter((shape) => shape.type !== "plane").map((shape) => ({ shape, corners: this.cornersOf(shape) }));
     const point = new THREE.Vector3();
     this.box = this.viewOf(samples, times);
     const size = this.box.getSize(point).length();
@@ -197,6 +198,7 @@ class Scene {
     if (this.followedAxes.length === 0 || !this.options.follow) return;
     const travel = this.travelOf(this.boxAt(sample, time)), step = travel.clone().sub(this.travelled);
     for (const moved of [this.camera.position, this.controls.target, this.grid.position, this.centre]) moved.add(step);
+    for (const { mesh, normal } of this.plates) mesh.position.add(step.clone().setComponent(normal, 0));
     this.frameBox.translate(step);
     this.travelled = travel;
   }
@@ -335,26 +337,37 @@ class Scene {
     return part;
   }
 
-  // Returns the radius about the origin of its object within which a shape lies.
-  boundingRadius(shape) {
-    const measure = (name) => this.value(shape[name] || "0"), away = Math.hypot(...AXES.map(measure));
-    if (shape.type === "mesh") return away + radiusOf(this.meshes.get(shape.mesh));
-    return away + Math.max(Math.hypot(...["sizeX", "sizeY", "sizeZ"].map(measure)) / 2, measure("radius") + measure("length") / 2);
+  // Returns the corners of a box around a shape, in its object's frame.
+  cornersOf(shape) {
+    const measure = (name) => this.value(shape[name] || "0"), radius = shape.type === "mesh" ? radiusOf(this.meshes.get(shape.mesh)) : measure("radius");
+    const along = measure("length") / 2 + (shape.type === "capsule" ? radius : 0), half = AXES.map((axis) => (shape.axis === axis && along > 0 ? along : radius || measure(`size${axis.toUpperCase()}`) / 2));
+    const place = new THREE.Matrix4().makeRotationFromEuler(new THREE.Euler(...["roll", "pitch", "yaw"].map(measure), "ZYX")).setPosition(...AXES.map(measure));
+    return CORNERS.map((signs) => new THREE.Vector3(...signs.map((sign, k) => sign * half[k])).applyMatrix4(place));
   }
 
-  // Expands a box by the shapes; a shape is within a ball about its object.
+  // Expands a box by the shapes.
   expandByShapes(box, sample) {
-    const point = new THREE.Vector3(), ball = new THREE.Box3();
-    for (const { shape, radius } of this.shapeRadii) {
-      const size = new THREE.Vector3(2 * radius, 2 * radius, 2 * radius);
-      if (this.plane) size.setComponent(this.planeNormal, 0);
-      box.union(ball.setFromCenterAndSize(this.position(sample, this.byName.get(shape.in), point), size));
+    const point = new THREE.Vector3(), origin = new THREE.Vector3(), rotation = new THREE.Matrix4();
+    for (const { shape, corners } of this.shapeCorners) {
+      const i = this.byName.get(shape.in);
+      this.position(sample, i, origin);
+      this.rotation(sample, i, rotation);
+      for (const corner of corners) {
+        point.copy(corner).applyMatrix4(rotation).add(origin);
+        if (this.plane) point.setComponent(this.planeNormal, origin.getComponent(this.planeNormal));
+        box.expandByPoint(point);
+      }
     }
   }
 
-  // Adds the shapes that are fixed to the base.
+  // Adds the shapes that are fixed to the base. Planes, which are drawn as plates, move with the view.
   addFixedShapes() {
-    for (const shape of this.shapes) if (!shape.in) this.world.add(this.meshOfShape(shape));
+    this.plates = [];
+    for (const shape of this.shapes.filter((one) => !one.in)) {
+      const mesh = this.meshOfShape(shape);
+      this.world.add(mesh);
+      if (shape.type === "plane") this.plates.push({ mesh, normal: AXES.indexOf(shape.axis) });
+    }
   }
 
   addLines(sample, time) {
@@ -508,11 +521,21 @@ class Scene {
       Object.assign(this.camera, { left: -half * aspect, right: half * aspect, top: half, bottom: -half });
     } else {
       this.camera.aspect = aspect;
-      const distance = (1.05 * this.radius) / Math.sin((35 * Math.PI) / 360) / Math.min(1, aspect);
+      const distance = this.distanceFor(Math.tan((35 * Math.PI) / 360), aspect);
       if (!this.sized) this.camera.position.copy(this.controls.target).addScaledVector(this.outwards, distance);
       this.sized = true;
     }
     this.camera.updateProjectionMatrix();
+  }
+
+  // Returns the distance of a camera that sees all corners of the frame. slope: the tangent of half its vertical angle.
+  distanceFor(slope, aspect) {
+    const across = new THREE.Vector3().crossVectors(new THREE.Vector3(...this.up), this.outwards).normalize(), upwards = new THREE.Vector3().crossVectors(this.outwards, across);
+    const centre = this.frameBox.getCenter(new THREE.Vector3()), half = this.frameBox.getSize(new THREE.Vector3()).multiplyScalar(0.5);
+    return Math.max(...CORNERS.map((signs) => {
+      const corner = new THREE.Vector3(...signs).multiply(half).add(centre).sub(this.centre);
+      return corner.dot(this.outwards) + Math.max(Math.abs(corner.dot(upwards)), Math.abs(corner.dot(across)) / aspect) / slope;
+    }));
   }
 
   fit() {

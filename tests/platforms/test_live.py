@@ -392,6 +392,30 @@ def test_a_ghost(browser, page_file):
         page.wait_for_function("live.history.runs === 1")
 
 
+SEEN_CORNERS = """() => {
+  const { frameBox, camera } = live.scene, ends = [frameBox.min, frameBox.max], corners = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => new THREE.Vector3(ends[k & 1].x, ends[(k >> 1) & 1].y, ends[k >> 2].z));
+  camera.updateMatrixWorld();
+  return corners.map((corner) => corner.project(camera).toArray());
+}"""
+
+
+def test_the_view_in_space_is_filled(browser, page_file):
+    """All of the frame is seen, and one of its corners is at an edge of the view."""
+    with opened(browser, page_file("HeavyTop")) as page:
+        seen = np.abs(np.array(page.evaluate(SEEN_CORNERS))[:, :2])
+        assert 0.99 < seen.max() < 1.001
+
+
+def test_short_experiments_and_large_numbers(browser, page_file):
+    """An experiment of 1 s is shown for 5 s; fields show numbers that are longer than they are as powers of ten."""
+    with opened(browser, page_file("WormGear")) as page:
+        assert page.inner_text("#speedShown") == "× 0.2"
+        page.get_by_role("spinbutton", name="load", exact=True).fill("123000000")
+        page.get_by_role("spinbutton", name="load", exact=True).press("Enter")
+        assert page.get_by_role("spinbutton", name="load", exact=True).input_value() == "1.23e+8"
+        page.click("#reset")
+
+
 def test_size(page_file):
     """Sizes with the renderer and without, in bytes."""
     text = page_file("DoublePendulum").read_text(encoding="utf-8")
