@@ -1,9 +1,9 @@
-"""States of first order, functions with names, and integrals, in addition to a system that is complete."""
+"""States of first order, functions with names, integrals and samples, in addition to a system that is complete."""
 
 from .draw import cos, sin, smooth, tanh
 from .expressions import function, name, node
 from .families import all_coordinates, all_velocities, put, time
-from .system import Coordinate, Function
+from .system import Coordinate, Function, Sample
 
 
 def any_mass(draw):
@@ -53,4 +53,19 @@ def energy_density(draw):
     draw.system.potentials.append(draw.quantity(0.1, 0.6) * sin(function("integral", s, draw.choice([0, -0.5]), high, integrand)))
 
 
-ADDITIONS = (state, state, named_function, named_function, energy_density)
+def sampled(draw):
+    """Forces of modes that one or two samples of different periods set, from the motion and from their own old values."""
+    system = draw.system
+    for number in range(1, draw.whole(1, 2) + 1):
+        labels = [f"hold{number}", f"last{number}"][: draw.whole(1, 2)]
+        atoms = [*all_coordinates(draw), *all_velocities(draw), *map(name, system.modes), time]
+        system.modes |= {label: draw.value(-0.5, 0.5) for label in labels}
+        values = {labels[0]: draw.quantity(-0.8, 0.8) * sin(smooth(draw, atoms, 2)) + draw.value(-0.5, 0.5) * name(labels[-1])}
+        values |= {label: name(labels[0]) for label in labels[1:]}
+        every = draw.value(0.03, 0.7) * system.plan.length / 5
+        offset = system.plan.start_time + draw.choice([0.0, every, draw.value(0, 0.5)])
+        system.samples.append(Sample(every, offset, values))
+        system.forces.append((any_mass(draw).name, draw.quantity(-1.5, 1.5) * draw.choice([name(labels[-1]), name(labels[0])])))
+
+
+ADDITIONS = (state, state, named_function, named_function, energy_density, sampled)

@@ -49,7 +49,7 @@ def integral(s, low, high, integrand):
 class Derivation:
     """
     Equations of a system. mechanics: mass matrix and right side; results: outputs, positions and energies by name; arguments: the FMU's
-    names of the symbols of mechanics: time, coordinates, velocities, inputs, parameters.
+    names of the symbols of mechanics: time, coordinates, velocities, inputs, parameters, and modes that samples set.
     """
 
     def __init__(self, system):
@@ -58,8 +58,8 @@ class Derivation:
         self.symbols = {"time": time}
         q = [symbol(c.name) for c in system.coordinates]
         v = [symbol(c.velocity) for c in system.coordinates]
-        inputs, parameters = [symbol(u) for u in system.inputs], [symbol(p) for p in system.parameters]
-        labels = [*system.positions, *system.velocities, *system.inputs, *system.parameters]
+        inputs, parameters = [symbol(u) for u in system.inputs], [symbol(p) for p in [*system.parameters, *system.modes]]
+        labels = [*system.positions, *system.velocities, *system.inputs, *system.parameters, *system.modes]
         self.arguments = ["time", *labels]
         self.symbols |= dict(zip(labels, [*q, *v, *inputs, *parameters]))
         self.rate = lambda expression: velocity(sp.sympify(expression), q, v)

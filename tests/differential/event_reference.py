@@ -12,7 +12,7 @@ import sympy as sp
 
 from mechanics import velocity
 
-from .reference import EVALUATIONS, INPUT_COEFFICIENTS, OUTCOMES, REAL, Undecided, compile_c, declarations, guards_of, in_c, part
+from .reference import EVALUATIONS, INPUT_COEFFICIENTS, OUTCOMES, REAL, Undecided, compile_c, declarations, divided, guards_of, in_c
 from .system import course
 
 AHEAD = 1e-7  # duration of the trial motion, in s
@@ -111,7 +111,8 @@ class EventReference:
             if not rows:
                 self._resolve_event(starts=True)
                 rows.append(self._row())
-            for moment, end in part(communication.time, communication.end, parts):
+            points = divided(communication.time, communication.end, parts)
+            for moment, end in zip(points, points[1:]):
                 self.time = np.longdouble(moment)
                 if kick is not None:
                     self._kick(kick)

@@ -28,7 +28,20 @@ def generate(seed, number):
     follow(Draw(f"{seed}/{number}/constraints", system))
     extend(Draw(f"{seed}/{number}/parts", system))
     add(Draw(f"{seed}/{number}/additions", system))
+    lengthen(Draw(f"{seed}/{number}/steps", system))
     return system
+
+
+def lengthen(draw):
+    """Some systems get a thousand communication steps; the settings stay at their times."""
+    plan = draw.system.plan
+    if not draw.chance(0.05):
+        return
+    steps = [Action() for _ in range(1000)]
+    for i, action in enumerate(plan.actions):
+        steps[i * len(steps) // len(plan.actions)] = action
+    plan.actions = steps
+    draw.system.families.add("a thousand steps")
 
 
 def plan(draw):
@@ -100,7 +113,7 @@ def extend(draw):
 
 
 def add(draw):
-    """States of first order, functions and integrals."""
+    """States of first order, functions, integrals and samples."""
     for addition in ADDITIONS:
         if draw.chance(0.15) and draw.system.method != "exact":
             addition(draw)

@@ -128,7 +128,8 @@ def declarations(derivation):
     for i, u in enumerate(system.inputs):
         k = [f"k[{base + INPUT_COEFFICIENTS * i + order}]" for order in range(INPUT_COEFFICIENTS)]
         lines.append(f"real {u} = {k[0]} + s * ({k[1]} + s * ({k[2]} + s * {k[3]}));")
-    return lines
+    first_mode = base + INPUT_COEFFICIENTS * len(system.inputs) + 1
+    return [*lines, *(f"real {mode} = k[{first_mode + i}];" for i, mode in enumerate(system.modes))]
 
 
 def in_c(expressions):
@@ -172,6 +173,13 @@ def right_side_in_c(derivation):
     return "\n".join([*lines, "}", ""]), len(guards)
 
 
+def samples_in_c(derivation):
+    """A function that computes the values of all samples in turn."""
+    statements, texts = in_c([derivation.convert(value) for sample in derivation.system.samples for value in sample.values.values()])
+    lines = ["void sampled(real t, const real *y, const real *k, real *value) {", *declarations(derivation), *statements]
+    return "\n".join([*lines, *(f"value[{i}] = {text};" for i, text in enumerate(texts)), "}", ""])
+
+
 class Reference:
     """Motion of one system under its plan."""
 
@@ -179,9 +187,10 @@ class Reference:
         self.system = derivation.system
         code, self.guards = right_side_in_c(derivation)
         source = Path(folder) / "right.c"
-        source.write_text(code)
+        source.write_text(code + samples_in_c(derivation))
         compile_c(source, source.with_suffix(".so"), "-O1")
-        self.right = ctypes.CDLL(str(source.with_suffix(".so"))).right
+        compiled = ctypes.CDLL(str(source.with_suffix(".so")))
+        self.right, self.sampled = compiled.right, compiled.sampled
         self.states = len(self.system.states)
         assert self.states <= STATES
 
@@ -191,13 +200,17 @@ class Reference:
         twelve times of the run. Raises Undecided.
         """
         system, plan = self.system, self.system.plan
+        modes = dict(system.modes)
         state = (REAL * self.states)(*system.start)
         step, evaluations = REAL(plan.length / 1000), ctypes.c_long(0)
         rows, parts = [system.start], max(1, 12 // len(plan.actions))
-        for communication in course(system):
-            constants = self._constants(communication)
-            for moment, end in part(communication.time, communication.end, parts):
-                if kick is not None:
+        kicked = max(1, len(plan.actions) // 100)  # of so many communication steps one has kicks
+        for number, communication in enumerate(course(system)):
+            constants = self._constants(communication, modes)
+            if number == 0:
+                self._sample(communication.time, state, constants, modes)
+            for moment, end in self._parts(communication, parts):
+                if kick is not None and number % kicked == 0:
                     for j, change in enumerate(kick([float(x) for x in state])):
                         state[j] = float(state[j]) + change
                 outcome = integrator().integrate(
@@ -207,18 +220,44 @@ class Reference:
                 )  # fmt: skip
                 if outcome != 0:
                     raise Undecided(OUTCOMES[outcome])
+                self._sample(end, state, constants, modes)
             rows.append([float(x) for x in state])
         return np.array(rows)
 
+    def _parts(self, communication, count):
+        """Parts of a communication step, which end at samples. Those at its end up to rounding happen there."""
+        begin, end = communication.time, communication.end
+        times = {time for sample in self.system.samples for time in sample.times(end)}
+        inner = {time for time in times if begin < time < end and not is_at(time, begin) and not is_at(time, end)}
+        points = sorted({*divided(begin, end, count), *inner})
+        return zip(points, points[1:])
+
+    def _sample(self, time, state, constants, modes):
+        """Set the modes of the samples at a time, all from the old values, also in the constants."""
+        samples = self.system.samples
+        values = (REAL * (1 + sum(len(sample.values) for sample in samples)))()
+        self.sampled(REAL(time), state, constants, values)
+        names = [(sample, mode) for sample in samples for mode in sample.values]
+        for (sample, mode), value in zip(names, values):
+            if any(is_at(time, one) for one in sample.times(time)):
+                modes[mode] = value
+        for i, value in enumerate(modes.values()):
+            constants[len(constants) - len(modes) + i] = value
+
     @staticmethod
-    def _constants(step):
+    def _constants(step, modes={}):
         values = list(step.parameters.values())
         for coefficients in step.inputs.values():
             values += [*coefficients, *[0.0] * (INPUT_COEFFICIENTS - len(coefficients))]
-        values.append(step.time)
+        values += [step.time, *modes.values()]
         return (REAL * len(values))(*values)
 
 
-def part(start, end, count):
-    points = [start + (end - start) * i / count for i in range(count)] + [end]
-    return zip(points, points[1:])
+def divided(start, end, count):
+    """Return the ends of equal parts of an interval."""
+    return [start + (end - start) * i / count for i in range(count)] + [end]
+
+
+def is_at(time, other):
+    """Return True if two times are equal up to rounding."""
+    return abs(time - other) <= 1e-13 * max(1.0, abs(time))

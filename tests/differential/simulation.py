@@ -77,9 +77,9 @@ def read_point(record, instance, system, step, time):
     values = try_call(record, instance, lambda: instance.fmu.getReal(instance.vr(*rates, *results)))
     if values is None:
         return
-    point = Point(
-        time, instance.fmu.getReal(instance.vr(*states)), parameters, inputs, dict(zip(rates + results, values))
-    )
+    found = dict(zip(rates + results, values))
+    constants = parameters | {mode: found[mode] for mode in system.modes}
+    point = Point(time, instance.fmu.getReal(instance.vr(*states)), constants, inputs, found)
     record.points.append(point)
     choose = random.Random(f"{system.name} {time}")
     outputs = [*rates, *system.outputs]

@@ -52,6 +52,19 @@ class Function:
 
 
 @dataclass
+class Sample:
+    """A <sample>: new values of modes at offset, offset + every, ..., from the old ones."""
+
+    every: float
+    offset: float
+    values: dict  # expressions by mode
+
+    def times(self, end):
+        """Return the times up to an end, by the count of samples, as the language defines them."""
+        return [self.offset + k * self.every for k in range(int((end - self.offset) / self.every) + 2)]
+
+
+@dataclass
 class Action:
     """Settings before a communication step: parameters, inputs, input derivatives by order, and a rewind."""
 
@@ -99,6 +112,8 @@ class System:
     tables: list = field(default_factory=list)
     functions: dict = field(default_factory=dict)  # Function by name
     dummies: list = field(default_factory=list)  # names of variables of integrals
+    modes: dict = field(default_factory=dict)  # start values by name, of modes that samples set
+    samples: list = field(default_factory=list)
     definitions: dict = field(default_factory=dict)
     outputs: dict = field(default_factory=dict)
     switches: Switches = field(default_factory=Switches)
@@ -228,6 +243,11 @@ class System:
             add("force", on=body, **force)
         for i, expression in enumerate(self.constraints, 1):
             add("constraint", expression, name=f"c{i}")
+        for name, value in self.modes.items():
+            add("mode", name=name, start=repr(value))
+        for sample in self.samples:
+            sets = "".join(f'<set mode="{mode}">{escape(str(value))}</set>' for mode, value in sample.values.items())
+            lines.append(f'  <sample every="{sample.every!r}" offset="{sample.offset!r}">{sets}</sample>')
         lines += [f"  {line}" for line in self.switches.xml()]
         for name, expression in self.outputs.items():
             add("output", expression, name=name)
