@@ -132,13 +132,18 @@ def known(names, among, description, what="is not a variable"):
     return list(names)
 
 
-def checked_start(start, description, free=None):
-    """Return the start values as numbers; raise Problem if one is for a variable that does not exist, or is not in `free`, by default settable()."""
+def checked_start(start, description, free=None, arguments=()):
+    """
+    Return the start values as numbers; raise Problem if one is for a variable that does not exist, or is not in `free`, by default settable().
+
+    `arguments` are further words that a misspelt name may stand for.
+    """
     variables = {variable.name: variable for variable in description.modelVariables}
     free = settable(description) if free is None else free
     for name in start:
         if name in variables and name not in free:
             raise Problem(f"'{name}' of {description.modelName} cannot be set{unsettable_reason(name, description)}; these can be: {', '.join(free)}")
         if name not in free:
-            raise Problem(f"'{name}' is not a variable of {description.modelName}; {suggestion(name, free, 'these can be')}")
+            near = nearest(name, free) or nearest(name, arguments)
+            raise Problem(f"'{name}' is not a variable of {description.modelName}; {suggestion(name, [near] if near else free, 'these can be')}")
     return numbers_of({name: truth_of(variables[name], value) for name, value in start.items()}, units_of(description))

@@ -200,7 +200,10 @@ def test_mistakes(archive, lagrange_fmu):  # noqa: F811
 @BOTH
 def test_mistakes_at_the_start(archive, lagrange_fmu, tmp_path):  # noqa: F811
     for words, message in (
-        ({"start_values": 3}, "cannot be"),
+        ({"start_values": 3}, "start_values is a int; expected a dict of numbers by name"),
+        ({"start_values": {"mm": 1}}, "'mm' is not a variable of PushedInSession"),
+        ({"start_value": {"m": 1}}, "'start_value' is not an argument of start; did you mean 'start_values'?"),
+        ({"tolerence": 1e-6}, "'tolerence' is not a variable of PushedInSession; did you mean 'tolerance'?"),
         ({"q": 1}, "'q' is not a variable of PushedInSession"),
         ({"m": "2m"}, "m: '2m' is in m; expected a value in kg"),
         ({"m": -1}, "PushedInSession cannot start: .*'m'"),
@@ -208,8 +211,10 @@ def test_mistakes_at_the_start(archive, lagrange_fmu, tmp_path):  # noqa: F811
         ({"tolerance": "fine"}, "the tolerance is 'fine'; expected a number between 0 and 1"),
         ({"fmi": 3}, "is built already"),
     ):
-        with pytest.raises(lagrange_fmu.Problem, match=message if "start_values" not in words else "'start_values' parameter is positional only"):
+        with pytest.raises(lagrange_fmu.Problem, match=message):
             lagrange_fmu.start(archive("PushedInSession"), **words)
+    with lagrange_fmu.start(archive("PushedInSession"), start_values={"m": 3.0}) as sim:
+        assert sim["m"] == 3.0
     with pytest.raises(lagrange_fmu.Problem, match="there is no file"):
         lagrange_fmu.start(tmp_path / "nothing.fmu")
 

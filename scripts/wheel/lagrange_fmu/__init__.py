@@ -132,8 +132,8 @@ def simulate(
 @checked
 def start(
     system: str | PathLike[str],
-    start_values: Mapping[str, float | str] | None = None,
     /,
+    start_values: Mapping[str, float | str] | None = None,
     *,
     fmi: int | None = None,
     solver: str | None = None,
@@ -170,8 +170,11 @@ def start(
     ...         sim["F"] = 20 * sim["theta"] + 4 * sim["omega"]
     ...         sim.step(0.01)
     """
-    from .session import Simulation
+    from .session import ARGUMENTS, Simulation
 
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            raise Problem(f"'{name}' is not an argument of start; {suggestion(name, ARGUMENTS, 'expected one of these')}")
     return Simulation(system, numbers_by_name(start_values) | numbers_by_name(values), fmi, solver, tolerance)
 
 

@@ -27,6 +27,9 @@ def _release(folder, instances):
     shutil.rmtree(folder, ignore_errors=True)
 
 
+ARGUMENTS = "start_values", "fmi", "solver", "tolerance"  # of start(), beside the names of variables
+
+
 class Simulation(NamedValues):
     """
     A running FMU.
@@ -72,7 +75,7 @@ class Simulation(NamedValues):
 
     def _checked(self, start_values):
         """Return start values by name as numbers of their variables' types, lists for arrays."""
-        found = {name: numbers_for(self.variables[name], value) for name, value in checked_start(start_values, self.description, startable(self.description)).items()}
+        found = {name: numbers_for(self.variables[name], value) for name, value in checked_start(start_values, self.description, startable(self.description), ARGUMENTS).items()}
         return {name: numbers if self.variables[name].shape else numbers[0] for name, numbers in found.items()}
 
     @contextmanager
