@@ -49,6 +49,9 @@ TILTED = """<system name="TiltedBox"><coordinate name="x" velocity="vx" unit="m"
   <shape name="g" type="plane" axis="y"/><contact name="c" between="b" and="g" friction="0.5"/></system>"""
 
 # Systems that never rest: a fall without a floor, and a force that only decreases; and a system without states.
+LIFTED = """<system name="Lifted"><coordinate name="h" velocity="v" unit="m" start="0.3"/><input name="F" unit="N"/><particle name="p" mass="2" y="h"/>
+  <constant name="g" value="9.81" unit="m/s2"/><constant name="m" value="2" unit="kg"/><potential>m*g*h</potential><force coordinate="h">F</force>
+  <contact name="floor" gap="h"/><output name="N" unit="N">floor.force</output></system>"""
 DOWN = FALLING.replace("Landed", "Falling").replace('<contact name="floor" gap="h" unit="m"/>', "")
 REPELLED = """<system name="Repelled"><coordinate name="x" velocity="v" unit="m" start="1"/><particle mass="1" x="x"/><potential>1/x</potential></system>"""
 GAIN = """<system name="Gain"><input name="u" unit="1" start="2"/><output name="y" unit="1">3*u</output></system>"""
@@ -56,7 +59,7 @@ GAIN = """<system name="Gain"><input name="u" unit="1" start="2"/><output name="
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"Leaning": LEANING, "HangingChain": CHAIN, "Piston": CYLINDER, "Controlled": CART, "Rolling": FREE, "Landed": FALLING, "Stuck": STUCK, "Falling": DOWN, "Climber": CLIMBER, "TiltedBox": TILTED, "Repelled": REPELLED, "Gain": GAIN}
+    texts = {"Leaning": LEANING, "HangingChain": CHAIN, "Piston": CYLINDER, "Controlled": CART, "Rolling": FREE, "Landed": FALLING, "Stuck": STUCK, "Falling": DOWN, "Lifted": LIFTED, "Climber": CLIMBER, "TiltedBox": TILTED, "Repelled": REPELLED, "Gain": GAIN}
     build_systems("equilibria", texts)
 
 
@@ -134,6 +137,16 @@ def test_contacts_and_friction(lagrange_fmu):  # noqa: F811
     np.testing.assert_allclose(np.sort_complex(found.eigenvalues), np.sort_complex(np.roots([2, 4, 50])), rtol=1e-7)
     found = lagrange_fmu.equilibrium(fmu.archive("Stuck"), {})
     assert found.point["x"] == 0.02 and found.constraints == ["rub"] and found.stability == "undecided" and found.eigenvalues.tolist() == [0]  # neighbouring positions are equilibria, too
+
+
+@pytest.mark.parametrize("height", [0.3, 0.0])
+def test_a_held_force_of_a_contact(height, lagrange_fmu):  # noqa: F811
+    """From above the floor, too: N = m g - F. A held height of 0 leaves the force open: F changes only if the contact is open."""
+    found = lagrange_fmu.equilibrium(fmu.archive("Lifted"), {"h": height}, hold={"N": 10}, vary=["F"])
+    assert found.point["F"] == pytest.approx(2 * G - 10, rel=1e-12) and found.point["h"] == pytest.approx(0, abs=1e-12)
+    assert found.constraints == ["floor"] and found.stability == "stable"
+    found = lagrange_fmu.equilibrium(fmu.archive("Lifted"), {"h": height}, hold={"h": 0}, vary=["F"])
+    assert found.point["F"] == pytest.approx(2 * G if height > 0 else 0.0, rel=1e-9) and (found.linearization is None) == (height > 0)
 
 
 def test_falls_into_a_rope(lagrange_fmu):  # noqa: F811
