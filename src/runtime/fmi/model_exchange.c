@@ -145,9 +145,10 @@ enum Status exchange_leave_event_mode(struct Instance *instance) {
  * order below the tolerance.
  *
  * Redundant constraints contradict each other by about d. Once the sine of the angle between one and the others, of
- * the order of d, exceeds the 1e-6 of saddle_pivot(), it counts as independent, and its force becomes large.
+ * the order of d, exceeds the 1e-6 of saddle_pivot(), it counts as independent, and its force becomes large. The
+ * contradiction costs about 5 d, and each event some tolerances: 3e-8 is between, for tolerances of 1e-8 to 1e-10.
  */
-static const double largest_redundant_drift = 1e-8;
+static const double largest_redundant_drift = 3e-8;
 
 /*
  * Tolerance e of an importer that passes none, as FMPy in model exchange. Where its integrator is more exact, the drift
