@@ -360,13 +360,17 @@ class Scene {
     }
   }
 
-  // Adds the shapes that are fixed to the base. Planes, which are drawn as plates, move with the view.
+  // Adds the shapes that are fixed to the base. Planes are drawn as plates below the system; unless they are inclined they move with the view.
   addFixedShapes() {
+    const centre = this.box.getCenter(new THREE.Vector3());
     this.plates = [];
     for (const shape of this.shapes.filter((one) => !one.in)) {
       const mesh = this.meshOfShape(shape);
       this.world.add(mesh);
-      if (shape.type === "plane") this.plates.push({ mesh, normal: AXES.indexOf(shape.axis) });
+      const normal = AXES.indexOf(shape.axis);
+      if (shape.type !== "plane" || ["roll", "pitch", "yaw"].some((name) => name in shape)) continue;
+      mesh.position.copy(centre.clone().setComponent(normal, mesh.position.getComponent(normal)));
+      this.plates.push({ mesh, normal });
     }
   }
 
