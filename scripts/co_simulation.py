@@ -71,7 +71,7 @@ class Slave:
             self.set(piece[0])
         self.fmu.exitInitializationMode()
         if left:
-            raise Problem(f"{self.description.modelName} takes no start values of {', '.join(left)}")
+            raise Problem(f"{self.description.modelName} accepts no start values of {', '.join(left)}")
 
     def constant_halves(self, piece, begin, end):
         """Return a list of (begin, end, values) of constant inputs that replace polynomials: one if these are constant, else two."""
@@ -339,7 +339,7 @@ def _run(slave, recorder, steps, record_events, feedback=None):
 
 def check_platform(archive):
     if platform not in supported_platforms(archive):
-        raise Problem(f"{archive} has no library for {platform} but for {', '.join(supported_platforms(archive)) or 'no platform'}; expected an FMU that was built for this machine")
+        raise Problem(f"{archive} has libraries for {', '.join(supported_platforms(archive)) or 'no platform'}, not for {platform}; expected an FMU that was built for this machine")
 
 
 def co_simulate(archive, description, start_values, signals, output, interval, start, stop, tolerance=None, feedback=None, record_events=True, logger=None, debug_logging=True, visible=False, fmi_call_logger=None):

@@ -88,7 +88,7 @@ def libraries_of(platform, name, fmi=2):
 def require_package(name, purpose):
     if find_spec(name) is None:
         pinned = re.search(rf"^{name}==.*", (ROOT / "scripts" / "requirements-platforms.txt").read_text(), re.M)
-        raise Failure(f"this Python has no package {name}, which {purpose}; expected one after pip install {pinned[0]}")
+        raise Failure(f"the Python package {name}, which {purpose}, is not installed; expected one after pip install {pinned[0]}")
 
 
 def folder_of(target):

@@ -34,7 +34,7 @@ def main():
     if arguments.edit and not arguments.system:
         parser.error("--edit needs --system")
     if arguments.edit and arguments.settings:
-        parser.error("--edit with NAME=VALUE; expected values in the system itself")
+        parser.error("--edit takes no NAME=VALUE; expected values in the system itself")
     origin = origin_in(arguments.build, arguments.system) if arguments.system else None
     try:
         page = arguments.page or Path("build/live") / f"{arguments.fmu.stem}{'-edit' if arguments.edit else ''}.html"

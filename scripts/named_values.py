@@ -60,7 +60,7 @@ class NamedValues:
         return bool(value) if variable.type == "Boolean" else value
 
     def __setitem__(self, name, value):
-        raise Problem(f"'{name}' cannot be set here; expected the inputs as what the function returns")
+        raise Problem(f"'{name}' cannot be set here; expected a function that returns the inputs")
 
     def set(self, variable, numbers):
         getattr(self.fmu, accessor("set", variable, self.description))([variable.valueReference], numbers)

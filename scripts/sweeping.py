@@ -115,7 +115,7 @@ class Parts:
             if not any(self.folder.iterdir()):
                 self.folder.rmdir()
             os.close(self.lock)
-            raise Problem(f"another sweep to {output} runs already; expected another --output, or to wait for its end")
+            raise Problem(f"another sweep to {output} is running; expected another --output, or to wait for its end")
 
     def _locked(self):
         """Create and lock the folder; wait for the end of an equal sweep that runs already. Return its descriptor, or None on Windows."""

@@ -31,5 +31,5 @@ def write_whole(path, content):
         finally:
             temporary.unlink(missing_ok=True)
     except OSError as problem:
-        raise Problem(f"{path} cannot be written: {problem.strerror}; expected a folder that can be written, with {len(content) / 1e6:.1g} MB of room") from None
+        raise Problem(f"{path} cannot be written: {problem.strerror}; expected a writable folder with {len(content) / 1e6:.1g} MB of free space") from None
     return path

@@ -125,11 +125,11 @@ def main():
     names = words.fmus or sorted(path.stem for path in FOLDERS[2].glob("*.fmu"))
     unknown = [name for name in names if not (FOLDERS[2] / f"{name}.fmu").exists()]
     if unknown:
-        parser.error(f"no FMU is called {unknown[0]}; build/fmu holds those that there are")
+        parser.error(f"there is no FMU {unknown[0]}; expected one of build/fmu")
     versions = installed()
     missing = [name for name in words.by or [] if name not in versions]
     if missing:
-        parser.error(f"{missing[0]} is not installed; here are {', '.join(versions)}")
+        parser.error(f"{missing[0]} is not installed; expected {', '.join(versions)}")
     if words.by:
         versions = {name: versions[name] for name in words.by}
     rows = [row for importer in versions for row in compare(names, importer, lambda text: print(text, flush=True))]

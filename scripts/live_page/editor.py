@@ -34,7 +34,7 @@ def files_of(system):
     for file in found:
         mesh = next((other for other in _named_in(file) if other.suffix.lower() in MESHES), None)
         if mesh is not None:
-            raise Problem(f"{file.name} names the mesh {mesh.name}, which a page that changes systems cannot hold; expected other shapes, or a page without --edit")
+            raise Problem(f"{file.name} uses the mesh {mesh.name}, which an editable page cannot contain; expected other shapes, or a page without --edit")
         found += [other for other in _named_in(file) if other not in found]
     folder = Path(os.path.commonpath([file.parent for file in found]))
     if folder == found[0].parent:
@@ -47,7 +47,7 @@ def _licenses():
     """Return the licenses of a page of an FMU, and that of libxml2."""
     file = next((path for path in LIBXML2_LICENSES if path.exists()), None)
     if file is None:
-        raise Problem("the license of libxml2, which is in the page, is not there; see scripts/libxml2")
+        raise Problem("the license of libxml2, which the page needs, is missing; run scripts/libxml2")
     return f"{licenses(has_scene=True, has_fmu=True)}\n\nlibxml2:\n\n{file.read_text(encoding='utf-8')}"
 
 
@@ -69,7 +69,7 @@ def editor_of(system, laboratory, examples=None, home=None):
     that of its address behind "#". `home` is the address of a page to which it links.
     """
     if not Path(laboratory).exists():
-        raise Problem(f"there is no {laboratory}, in which systems are derived in a page; see scripts/laboratory")
+        raise Problem(f"there is no {laboratory}, which derives systems in the page; run scripts/laboratory")
     data = {
         **files_of(system),
         "examples": examples or {},

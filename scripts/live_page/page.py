@@ -56,7 +56,7 @@ def script_of(names):
 def renderer():
     """Return three.js, packed; raise Problem if it is not installed."""
     if THREE is None:
-        raise Problem("there is no three.js, which draws the page; install Debian's package libjs-three")
+        raise Problem("three.js, which draws the page, is not installed; install Debian's package libjs-three")
     return packed("\n".join((THREE / name).read_text(encoding="utf-8") for name in THREE_FILES).encode())
 
 
@@ -81,7 +81,7 @@ def one_source(fmu, folder):
     with zipfile.ZipFile(fmu) as archive:
         names = [name for name in archive.namelist() if re.fullmatch(r"sources/[^/]*\.c", name)]
         if len(names) != 1:
-            raise Problem(f"{Path(fmu).name} carries no sources, since its method is SUNDIALS'; give the system another <solver>, such as auto")
+            raise Problem(f"{Path(fmu).name} contains no sources, since its method is of SUNDIALS; give the system another <solver>, such as auto")
         return archive.extract(names[0], folder)
 
 

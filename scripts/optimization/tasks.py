@@ -62,6 +62,6 @@ def with_values(task, values, description):
     numbers = checked_start(values, description)
     for name in numbers:
         if name in task.inputs:
-            raise Problem(f"'{name}' is what the motion of {task.fmu} optimizes; expected parameters and states")
+            raise Problem(f"'{name}' is an input of {task.fmu}, which the optimization finds; expected parameters and states")
     start = [numbers.pop(name, value) for name, value in zip(task.states, task.start)]
     return task._replace(start=np.array(start), parameters=task.parameters | numbers)

@@ -66,7 +66,7 @@ def test_table(capfd, monkeypatch):
     """
     from importing import __main__ as table
 
-    for words, message in ((["--by", "Nobody"], "Nobody is not installed; here are FMPy"), (["Nothing"], "no FMU is called Nothing")):
+    for words, message in ((["--by", "Nobody"], "Nobody is not installed; expected FMPy"), (["Nothing"], "there is no FMU Nothing")):
         monkeypatch.setattr(sys, "argv", ["scripts/importers", *words])
         with pytest.raises(SystemExit):
             table.main()

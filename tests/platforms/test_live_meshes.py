@@ -62,5 +62,5 @@ def test_triangles(page):
 def test_a_page_that_changes_systems(tmp_path):
     (tmp_path / "die.stl").write_bytes(b"\xff")
     (tmp_path / "system.xml").write_text(DRAWN)
-    with pytest.raises(Problem, match="system.xml names the mesh die.stl, which a page that changes systems cannot hold"):
+    with pytest.raises(Problem, match="system.xml names the mesh die.stl, which an editable page cannot contain"):
         files_of(tmp_path / "system.xml")

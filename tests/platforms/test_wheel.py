@@ -128,7 +128,7 @@ def test_a_page_to_write_in(tmp_path):
     page = (tmp_path / "Mine-edit.html").read_text()
     assert '"laboratory":"' in page and '<system name=\\"Mine\\"' in page.replace("\\u003c", "<") and len(page) < 1_030_000
     result = wheel.run("live", "Mine.fmu", "--edit", cwd=tmp_path)
-    assert result.returncode != 0 and "Mine.fmu is an FMU; to edit it expected the system.xml that it was made of" in result.stderr
+    assert result.returncode != 0 and "Mine.fmu is an FMU, which cannot be edited; expected the system.xml of which it was made" in result.stderr
 
 
 @pytest.mark.parametrize("name", ["DoublePendulum", "InvertedPendulumCart", "RollingDisk", "StateFeedback"])
@@ -200,7 +200,7 @@ def test_solvers_of_sundials(tmp_path):
     (["run", "good.xml", "x"], "'x' is not NAME=VALUE"),
     (["run", "good.xml", "y=1"], "'y' is not a variable of Good; these can be: x, v"),
     (["new", "3D"], "'3D' cannot name a system; expected letters, digits and _"),
-    (["new", "good"], "good.xml is already there; expected another name"),
+    (["new", "good"], "good.xml exists already; expected another name"),
     (["make"], "invalid choice: 'make'; choose from: new, check, show, build"),
 ])  # fmt: skip
 def test_mistakes(words, message, tmp_path):

@@ -192,11 +192,11 @@ def test_the_command(lagrange_fmu, tmp_path):  # noqa: F811
 
 
 @pytest.mark.parametrize("name, words, message", [
-    ("Leaning", {"guess": {}, "hold": {"theta": 1}}, r"Leaning does not come to rest near the guess: der\(omega\) = 4.50966 rad/s2 where the search ends, at theta = 1, .*, or an input that balances it, as vary=\['tau'\]"),
+    ("Leaning", {"guess": {}, "hold": {"theta": 1}}, r"Leaning has no equilibrium near the guess: der\(omega\) = 4.50966 rad/s2 where the search ends, at theta = 1, .*, or an input that balances it, as vary=\['tau'\]"),
     ("Falling", {"guess": {"h": 1}}, r"der\(v\) = -9.81 m/s2 where"),
-    ("Repelled", {}, "Repelled does not come to rest near the guess: it only comes closer to rest further and further away"),
+    ("Repelled", {}, "Repelled has no equilibrium near the guess: the rates vanish only at infinity"),
     ("Leaning", {"guess": {"thata": 1}}, "'thata' is not a variable of Leaning; did you mean 'theta'"),
-    ("Leaning", {"guess": {}, "hold": {"hight": 1}}, "'hight' is no state, output, input or parameter of Leaning; did you mean 'height'"),
+    ("Leaning", {"guess": {}, "hold": {"hight": 1}}, "'hight' is not a state, output, input or parameter of Leaning; did you mean 'height'"),
     ("Leaning", {"guess": {}, "vary": ["theta"]}, "'theta' is no input or parameter of Leaning"),
     ("Leaning", {"guess": {}, "vary": ["tau"], "hold": {"tau": 1}}, "'tau' is held and varies"),
     ("Leaning", {"guess": {"theta": "1m"}}, "theta: '1m' is in m; expected a value in rad"),

@@ -255,7 +255,7 @@ def test_feedback_is_held_in_each_step(version):
     (lambda t, sim: {"x": 1}, "'x' is not an input of Pushed"),
     (lambda t, sim: sim["y"], "'y' is not a variable of Pushed"),
     (lambda t, sim: None, "'F' is set to None; expected a number|expected a finite number"),
-    (lambda t, sim: sim.__setitem__("F", 1), "'F' cannot be set here; expected the inputs as what the function returns"),
+    (lambda t, sim: sim.__setitem__("F", 1), "'F' cannot be set here; expected a function that returns the inputs"),
 ])  # fmt: skip
 def test_wrong_feedback(function, message):
     with pytest.raises(Problem, match=message):

@@ -75,7 +75,7 @@ def test_values_of_a_task():
     expected = [0, 0, -0.1 * 9.81 * sine * cosine / (1 + 0.1 * sine**2), 1.1 * 9.81 * sine / (0.4 * (1 + 0.1 * sine**2))]
     np.testing.assert_allclose(np.array(slopes_of(unpacked, task)([0, 0.3, 0, 0], 0))[:, 0], expected, rtol=1e-12)
     check(task, unpacked)
-    for values, message in (({"F": 1}, "'F' is what the motion of InvertedPendulumCart optimizes"), ({"L": 1}, "'L' is not a variable of InvertedPendulumCart; did you mean 'l'?")):
+    for values, message in (({"F": 1}, "'F' is an input of InvertedPendulumCart, which the optimization finds"), ({"L": 1}, "'L' is not a variable of InvertedPendulumCart; did you mean 'l'?")):
         with pytest.raises(Problem, match=re.escape(message)):
             with_values(CART, values, fmu.description("InvertedPendulumCart"))
 

@@ -307,7 +307,7 @@ def test_reference(command, tmp_path):
     (["run", fmu.archive("InvertedPendulumCart"), "--input", "bad.csv"], "bad.csv:3: 'a' is not a number"),
     (["run", fmu.archive("InvertedPendulumCart"), "--input", "back.csv"], "expected lines of finite numbers, whose times do not decrease"),
     (["run", fmu.archive("InvertedPendulumCart"), "--input", "text.fmu"], "the first line is 'no archive'; expected time and names of variables"),
-    (["run", fmu.archive("SimplePendulum"), "--solver", "bdf"], "is built already, with its solver"),
+    (["run", fmu.archive("SimplePendulum"), "--solver", "bdf"], "is an FMU, whose solver"),
     (["run", fmu.archive("SimplePendulum"), "--step", "-1"], "'-1' is not a positive number"),
     (["linearize", fmu.archive("SimplePendulum"), "--at", "q=1"], "'q' is not a variable of SimplePendulum"),
     (["linearize", fmi3.archive("SimplePendulum")], "has no directional derivatives of FMI 2.0; expected a system"),
@@ -377,7 +377,7 @@ except lagrange_fmu.Problem as problem:
 """.replace("MOTOR", repr(str(fmu.archive("SpringDamper"))))
     (tmp_path / "script.py").write_text(script)
     printed = succeed(package.python(folder, "script.py", cwd=tmp_path)).splitlines()
-    assert printed == ["swing.html 2 (10,) 1.0", "SpringDamper has no particles, bodies, frames or points to be drawn; expected some in the system"]
+    assert printed == ["swing.html 2 (10,) 1.0", "SpringDamper has no particles, bodies, frames or points to draw; expected some in the system"]
     page = (tmp_path / "swing.html").read_text()
     assert '"recording":{' in page and re.search(r'"start":{[^}]*"theta":1.0[,}]', page)
 
@@ -461,8 +461,8 @@ SENTENCES = [
     "random is -1; expected a whole number of runs",
     "seed is -1; expected a whole number that is not negative",
     "stop_time is '2'; expected a positive number",
-    f"{fmu.archive('SimplePendulum')} is an FMU; to edit it expected the system.xml that it was made of",
-    "the page that changes pendulum.xml begins with the values in it; expected edit=True without l",
+    f"{fmu.archive('SimplePendulum')} is an FMU, which cannot be edited; expected the system.xml of which it was made",
+    "an editable page of pendulum.xml starts with the values in the file; expected edit=True without l",
     "'L' is not a variable of SimplePendulum; did you mean 'l'?",
     "the reference says nothing about 'restitutoin'; did you mean 'restitution'?",
     "the reference says nothing about 'restitutio'; did you mean 'restitution'?",

@@ -89,7 +89,7 @@ def test_commands(command, tmp_path):
     fitted = command("fit", fmu, data, *words, cwd=tmp_path)
     assert float(fitted.stdout.split()[1]) == pytest.approx(0.4, rel=1e-6), fitted.stdout + fitted.stderr
     beyond = command("fit", fmu, data, "--vary", "l", "--bounds", "l=10cm:20cm", "--set", "l=50cm", cwd=tmp_path)
-    assert "'l' begins at 0.5, and its bounds are 0.1 and 0.2" in beyond.stderr
+    assert "the initial value 0.5 of 'l' is outside its bounds, 0.1 and 0.2" in beyond.stderr
 
 
 def test_sweeps(tmp_path):

@@ -156,7 +156,7 @@ WRONG = [
     ("sim['y']", "'y' is not a variable of NoisyInSession; these are: "),
     ("sim['noize'] = 1", "'noize' is not a variable of NoisyInSession; did you mean 'noise'?"),
     ("sim[0]", "0 is not the name of a variable"),
-    ("sim['x'] = 1", "'x' can be set at the start alone; expected start(..., {'x': ...})"),
+    ("sim['x'] = 1", "'x' can be set at the start only; expected start(..., {'x': ...})"),
     ("sim['wall.closed'] = 1", "'wall.closed' of NoisyInSession cannot be set; these are inputs: u"),
     ("sim['u'] = [1, 2]", "'u' is set to [1, 2]; expected a finite number"),
     ("sim['u'] = np.nan", "'u' is set to nan; expected a finite number"),
@@ -209,7 +209,7 @@ def test_mistakes_at_the_start(archive, lagrange_fmu, tmp_path):  # noqa: F811
         ({"m": -1}, "PushedInSession cannot start: .*'m'"),
         ({"m": [1, 2]}, "'m' is set to .1, 2.; expected a finite number"),
         ({"tolerance": "fine"}, "the tolerance is 'fine'; expected a number between 0 and 1"),
-        ({"fmi": 3}, "is built already"),
+        ({"fmi": 3}, "is an FMU, whose solver"),
     ):
         with pytest.raises(lagrange_fmu.Problem, match=message):
             lagrange_fmu.start(archive("PushedInSession"), **words)

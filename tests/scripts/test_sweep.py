@@ -225,7 +225,7 @@ def test_two_different_sweeps_to_one_file(tmp_path):
         assert first.poll() is None
         time.sleep(0.005)
     second = subprocess.run(command(output, *words, "1"), capture_output=True, text=True)
-    assert second.returncode == 1 and second.stderr == f"scripts/sweep: another sweep to {output} runs already; expected another --output, or to wait for its end\n"
+    assert second.returncode == 1 and second.stderr == f"scripts/sweep: another sweep to {output} is running; expected another --output, or to wait for its end\n"
     assert first.wait(timeout=120) == 0
     table = pq.read_table(output)
     assert table.num_rows == 1500 and [path.name for path in tmp_path.iterdir()] == ["x.parquet"]

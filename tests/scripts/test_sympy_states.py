@@ -63,8 +63,8 @@ def simple():
 @pytest.mark.parametrize("states, message", [
     ({force: force.diff()}, "the rate of force.t. needs itself"),
     ({force: total.diff(), total: force.diff()}, "the rate of force.t. needs itself"),
-    ({x: 1}, "x.t. is no state; expected a dynamicsymbol or a name"),
-    ({m: 1}, "m is no state"),
+    ({x: 1}, "x.t. is not a state; expected a dynamicsymbol or a name"),
+    ({m: 1}, "m is not a state"),
     ({force: sm.gamma(x)}, "the rate of force.t.: gamma"),
     ({force: x.diff(t, 3)}, "Derivative.*is an acceleration"),
 ])  # fmt: skip

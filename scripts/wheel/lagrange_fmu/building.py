@@ -279,5 +279,5 @@ def new(name: str, template: str = "pendulum") -> Path:
         raise Problem(f"'{name}' cannot name a system; expected letters, digits and _, at most 100, and no digit at the beginning")
     path = Path(f"{name}.xml")
     if path.exists():
-        raise Problem(f"{path} is already there; expected another name")
+        raise Problem(f"{path} exists already; expected another name")
     return write_whole(path, (HERE / "templates" / f"{template}.xml").read_text(encoding="utf-8").replace("@NAME@", name))

@@ -232,13 +232,13 @@ class _Search:
         place = ", ".join(f"{name} = {value:.6g}" for name, value in list(zip([*self.point.states, *self.vary], values))[:6])
         free = [name for name in self.point.inputs if name not in self.vary]
         remedy = f"or an input that balances it, as vary={free[:1]}" if free else "or fewer values that are held" if self.hold else "or other parameters"
-        return f"{self.point.name} does not come to rest near the guess: {', '.join(rates + missed) or 'it only comes closer to rest further and further away'} where the search ends, at {place}; expected another guess, {remedy}"
+        return f"{self.point.name} has no equilibrium near the guess: {', '.join(rates + missed) or 'the rates vanish only at infinity'} where the search ends, at {place}; expected another guess, {remedy}"
 
 
 def equilibrium(system, guess, hold, vary):
     with opened(system, dict(guess), what="rest there") as point:
         names = [*dict.fromkeys([*point.settable, *point.outputs])]
-        known(hold, names, point.description, "is no state, output, input or parameter")
+        known(hold, names, point.description, "is not a state, output, input or parameter")
         hold = numbers_of(hold, point.units)
         known(vary, [name for name in point.settable if name not in point.states], point.description, "is no input or parameter")
         for name in vary:

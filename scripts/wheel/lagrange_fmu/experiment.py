@@ -100,7 +100,7 @@ class Experiment:
             if name not in read:
                 raise Problem(f"'{name}' of the data is not an output, a state or its derivative, nor an input; expected no such column, or one of these names: {', '.join([*read, *point.inputs])}")
         if not self.measured:
-            raise Problem(f"the data have no column that the system has as an output or state; expected some of {', '.join(read)}")
+            raise Problem(f"no column of the data is an output or state of the system; expected some of {', '.join(read)}")
         for name in [*self.inputs, *self.measured]:
             values = self.data[name]
             if np.isinf(values).any() or not np.isfinite(values).any():

@@ -106,7 +106,7 @@ class _Search:
         limits = [given.get(kind, point.limits[kind]) for kind in self.kinds]
         for (name, value), (low, high) in zip(self.begin.items(), limits):
             if not low <= value <= high or not low < high:
-                raise Problem(f"'{name}' begins at {value:g}, and its bounds are {low:g} and {high:g}; expected a start value between them")
+                raise Problem(f"the initial value {value:g} of '{name}' is outside its bounds, {low:g} and {high:g}; expected a value between them")
         return np.array(limits, dtype=float).T
 
     def residuals_at(self, values):
@@ -117,7 +117,7 @@ class _Search:
                 experiment.run(values)
         except FAILURES as problem:
             if self.best is None:
-                raise Problem(f"the motion from the values to begin with cannot be computed: {problem}") from None
+                raise Problem(f"the motion with the initial values cannot be computed: {problem}") from None
             self.failed += 1
             return np.full(self.size, np.nan)
         self.at = values.copy()

@@ -54,7 +54,7 @@ def read_table(path, units):
         first = separator.join(rows[0][1]) if rows else ""
         raise Problem(f"{path}: the first line is '{first}'; expected time and names of variables, each once, such as time,theta")
     if separator != "," and all(any(mark in word for _, row in rows[1:] for word in row) for mark in ",."):
-        raise Problem(f"{path}: there are numbers with commas and numbers with points; expected one kind, and no marks between thousands")
+        raise Problem(f"{path}: numbers have decimal commas and decimal points; expected one kind, and no separators of thousands")
     values = np.empty((len(rows) - 1, len(names)))
     for place, (line, row) in enumerate(rows[1:]):
         if len(row) != len(names):

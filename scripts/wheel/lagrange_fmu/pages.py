@@ -16,7 +16,7 @@ LABORATORY = Path(__file__).parent / "live_page" / "laboratory.wasm"
 def editor(system, output=None):
     """Write the page in which the system can be changed; return its path."""
     if is_fmu(system):
-        raise Problem(f"{system} is an FMU; to edit it expected the system.xml that it was made of")
+        raise Problem(f"{system} is an FMU, which cannot be edited; expected the system.xml of which it was made")
     file = system_file(system)
     name = file.parent.resolve().name if file.name == "system.xml" else file.stem
     return write_editor(file, LABORATORY, output or Path(f"{name}-edit.html"))
@@ -25,7 +25,7 @@ def editor(system, output=None):
 def live(system, settings=None, output=None, edit=False):
     """See lagrange_fmu.live."""
     if edit and settings:
-        raise Problem(f"the page that changes {system} begins with the values in it; expected edit=True without {', '.join(settings)}")
+        raise Problem(f"an editable page of {system} starts with the values in the file; expected edit=True without {', '.join(settings)}")
     if edit:
         return editor(system, output)
     share_zig_cache()

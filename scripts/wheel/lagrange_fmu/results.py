@@ -115,7 +115,7 @@ class Result(np.ndarray):
         from .problem import Problem
 
         if not scene_of(self.motion.tree):
-            raise Problem(f"{self.description.modelName} has no particles, bodies, frames or points to be drawn; expected some in the system")
+            raise Problem(f"{self.description.modelName} has no particles, bodies, frames or points to draw; expected some in the system")
         return Animation(page_of_motion(self.motion.tree, self.motion.values, self.motion.start))
 
     def to_pandas(self) -> Any:

@@ -25,7 +25,7 @@ def fmu_of(system, folder=None, method=None, fmi=None, words=()):
     """
     if is_fmu(system):
         if method is not None or fmi is not None:
-            raise Problem(f"{system} is built already, with its solver and version of FMI; expected a system to choose them for")
+            raise Problem(f"{system} is an FMU, whose solver and version of FMI are fixed; expected a system to choose them for")
         yield Path(system)
         return
     with tempfile.TemporaryDirectory() as scratch:

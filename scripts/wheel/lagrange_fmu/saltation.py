@@ -45,7 +45,7 @@ def crossing_of(indicators, begin, end):
     nearest = int(np.argmin(times))
     unit = max(1.0, abs(times[nearest]))
     if np.count_nonzero(np.array(times) < times[nearest] + SIMULTANEOUS * unit) > 1:
-        raise Problem(f"there are several events at once at {times[nearest]:g} s, through which there are no derivatives; expected a stop time before them")
+        raise Problem(f"several events coincide at {times[nearest]:g} s, so that the motion has no derivatives there; expected a stop time before them")
     return times[nearest] + CROSSING_DELAY * unit, crossing[nearest]
 
 

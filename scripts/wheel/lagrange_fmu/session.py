@@ -42,7 +42,7 @@ class Simulation(NamedValues):
         with fmu_of(system, method=solver, fmi=fmi) as archive:
             description = described(archive)
             if description.coSimulation is None:
-                raise Problem(f"{archive} has no co-simulation; expected an FMU with it")
+                raise Problem(f"{archive} does not support co-simulation; expected an FMU that does")
             check_platform(archive)
             folder, instances = extract(str(archive)), []
         self._close = weakref.finalize(self, _release, folder, instances)
@@ -114,7 +114,7 @@ class Simulation(NamedValues):
             return
         name = variable.name
         if name in startable(self.description):
-            raise Problem(f"'{name}' can be set at the start alone; expected start(..., {{'{name}': ...}}) or reset({{'{name}': ...}})")
+            raise Problem(f"'{name}' can be set at the start only; expected start(..., {{'{name}': ...}}) or reset({{'{name}': ...}})")
         raise Problem(f"'{name}' of {self.description.modelName} cannot be set{unsettable_reason(name, self.description)}; these are inputs: {', '.join(self.inputs) or 'none'}")
 
     def step(self, length):

@@ -40,7 +40,7 @@ class _Content:
             raise Problem(f"there are {len(speeds)} speeds and {len(self.velocities)} coordinates; expected one for each")
         for speed in speeds or []:
             if not isinstance(speed, AppliedUndef):
-                raise Problem(f"{speed} is no speed; expected a dynamicsymbol or a name")
+                raise Problem(f"{speed} is not a speed; expected a dynamicsymbol or a name")
         self.velocity_of = dict(zip(speeds or [], self.velocities))
         rates = self._rates(states)
         in_motion = self._substituted([*method._L, *method._hol_coneqs, *method.coneqs[len(method._hol_coneqs) :]])
@@ -72,7 +72,7 @@ class _Content:
         for state, rate in states.items():
             state = dynamicsymbols(state) if isinstance(state, str) else state
             if not isinstance(state, AppliedUndef) or state in (*self.coordinates, *self.velocity_of):
-                raise Problem(f"{state} is no state; expected a dynamicsymbol or a name that is neither a coordinate nor a speed")
+                raise Problem(f"{state} is not a state; expected a dynamicsymbol or a name that is neither a coordinate nor a speed")
             self.rate_of[state] = normalized(rate).xreplace(self.velocity_of)
         rates = self._substituted(self.rate_of.values())
         for state, rate in zip(self.rate_of, rates):
@@ -86,7 +86,7 @@ class _Content:
         for expression in in_motion + others + rates:
             for function in expression.atoms(AppliedUndef):
                 if function.args != (self.time,):
-                    raise Problem(f"{function} is a function that is not known; expected coordinates and inputs, which are functions of t alone")
+                    raise Problem(f"the function {function} is not known; expected coordinates and inputs, which are functions of t alone")
                 if function not in self.coordinates and function not in self.rate_of:
                     # A prescribed motion needs the velocity and the acceleration of its input.
                     counts[function] = max(counts.get(function, 0), 2 if expression in in_motion else 0)

@@ -253,5 +253,5 @@ class DifferencedMotion:
             else:
                 return slope
         if not ends:
-            raise Problem(f"the motion can be computed from no value of '{name}' near {value:g}; expected another value")
+            raise Problem(f"the motion cannot be computed for any value of '{name}' near {value:g}; expected another value")
         return slope

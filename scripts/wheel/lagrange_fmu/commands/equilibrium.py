@@ -6,9 +6,9 @@ from .shared_arguments import SYSTEM_OR_FMU
 
 def arguments(parser):
     parser.add_argument("system", **SYSTEM_OR_FMU)
-    parser.add_argument("guess", nargs="*", type=assignment, metavar="NAME=VALUE", help="where the search begins, and parameters; else their start values")
-    parser.add_argument("--hold", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="what has this value in the end: coordinates, states, outputs")
-    parser.add_argument("--vary", nargs="+", action="extend", default=[], metavar="NAME", help="inputs and parameters to be found too")
+    parser.add_argument("guess", nargs="*", type=assignment, metavar="NAME=VALUE", help="initial guess, and parameters; default: their start values")
+    parser.add_argument("--hold", nargs="+", action="extend", default=[], type=assignment, metavar="NAME=VALUE", help="values at the equilibrium: of coordinates, states, outputs")
+    parser.add_argument("--vary", nargs="+", action="extend", default=[], metavar="NAME", help="inputs and parameters to find, too")
 
 
 def run(arguments):

@@ -10,4 +10,4 @@ def arguments(parser):
 
 def run(arguments):
     path = new(arguments.name, arguments.template)
-    print(f"{path} is written, a system from the template {arguments.template}; next: lagrange-fmu run {path}")
+    print(f"wrote {path} from the template {arguments.template}; next: lagrange-fmu run {path}")
