@@ -52,7 +52,7 @@ def _licenses():
 
 
 def language():
-    """Return what the editor offers: for each element, where it stands, a sentence, its attributes and its contents."""
+    """Return the completions of the editor: for each element its parents, a sentence, its attributes and its contents."""
     schema = Schema(next(path for path in SCHEMAS if path.exists()).read_text(encoding="utf-8"))
 
     def kind(parents, declaration):

@@ -17,7 +17,7 @@ def _argument_message(function, signature, words, error):
 
 
 def checked(function):
-    """Return a function that raises Problem for arguments which do not fit the signature, and for a system that is not a path."""
+    """Return the function, with a check that raises Problem for arguments that do not fit the signature, and for a system that is not a path."""
     signature = inspect.signature(function)
     plain = signature.replace(parameters=[one.replace(annotation=inspect.Parameter.empty) for one in signature.parameters.values()])
 

@@ -50,7 +50,7 @@ struct LineDrawing {
   size_t count;
 };
 
-/* True if the author describes what is drawn by a <line>. */
+/* True if the author draws the system by <line> elements. */
 bool has_described_lines(const struct LineDrawing *drawing);
 
 /* True for a line with two ends. */

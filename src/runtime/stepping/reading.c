@@ -81,7 +81,7 @@ void reading_end(struct Instance *instance) {
  */
 static const double displacement[] = {1e-3, 1e-5, 1e-7};
 
-/* Second difference over displacement that is no kink, in units of the scales. */
+/* Largest ratio of second difference and displacement that is not a kink, in units of the scales. */
 static const double straight = 1e-2;
 
 /* Returns the largest of count values, each divided by the variable that it changes, but at least by 1. */
