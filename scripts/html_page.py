@@ -26,7 +26,7 @@ tr:first-child th { color: var(--faint); vertical-align: bottom; }
 td.number, th.number, td.ratio { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .wide { overflow-x: auto; } .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(25rem, 100%), 1fr)); gap: 1rem; }
 svg { display: block; width: 100%; height: auto; } svg text { fill: currentColor; }
-.right { color: #2d8a5f; } .refused { color: #b08a00; } .wrong { color: #e5383b; font-weight: bold; }
+.right { color: #2d8a5f; } .rejected { color: #b08a00; } .wrong { color: #e5383b; font-weight: bold; }
 svg.overview { min-width: 40rem; max-width: 64rem; font-size: 14px; } svg.overview line { stroke: var(--line); } svg.overview .one { stroke: var(--text); stroke-width: 2; }
 svg.overview circle { fill-opacity: .75; stroke: var(--paper); }
 table.overview .group th { padding-top: 1rem; color: var(--faint); } [data-tip] { cursor: help; }

@@ -84,8 +84,8 @@ def stability_section(quick, progress):
     header = ["case", "FMU", "what is right", "verdict", "model exchange", "error", "bound", "steps", "evaluations", "bound", "message"]
     write_csv(FOLDER / "stability.csv", header, rows)
     coloured = [[*row[:3], (row[3], row[3]), *row[4:]] for row in rows]
-    counts = {verdict: sum(row[3] == verdict for row in rows) for verdict in ("right", "refused", "wrong")}
-    text = (f"{len(rows)} cases: {counts['right']} right, {counts['refused']} refused with a message, {counts['wrong']} wrong. Each has a bound "
+    counts = {verdict: sum(row[3] == verdict for row in rows) for verdict in ("right", "rejected", "wrong")}
+    text = (f"{len(rows)} cases: {counts['right']} right, {counts['rejected']} rejected with a message, {counts['wrong']} wrong. Each has a bound "
             "on its error and on the evaluations of the equations of motion; the same table is a test.")  # fmt: skip
     return Section([text], paragraphs([text]) + table(header, coloured), counts["wrong"])
 

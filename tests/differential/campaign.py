@@ -19,7 +19,7 @@ from . import generator, switching_generator
 from .reference import integrator
 
 GENERATORS = {"smooth": generator.generate, "switching": switching_generator.generate}
-VERDICTS = ["agrees", "refused", "undecided", "wrong"]
+VERDICTS = ["agrees", "rejected", "undecided", "wrong"]
 
 
 def examine(task):
@@ -55,7 +55,7 @@ def general(message):
 def report(outcomes, seconds):
     counts = collections.Counter(o.verdict for o in outcomes.values())
     print(f"\n{len(outcomes)} systems in {seconds:.0f} s: " + ", ".join(f"{counts[v]} {v}" for v in VERDICTS))
-    for verdict, regular in (("refused", True), ("refused", False), ("undecided", False)):
+    for verdict, regular in (("rejected", True), ("rejected", False), ("undecided", False)):
         chosen = {n: general(o.message) for n, o in outcomes.items() if o.verdict == verdict and o.regular == regular}
         for message, count in collections.Counter(chosen.values()).most_common(25):
             example = min(number for number, text in chosen.items() if text == message)

@@ -24,7 +24,7 @@ ROUNDING = 2.0**-52
 
 @dataclass
 class Outcome:
-    verdict: str = "agrees"  # or refused, undecided, wrong
+    verdict: str = "agrees"  # or rejected, undecided, wrong
     message: str = ""
     regular: bool = False  # True if the motion exists to the end and is known
     error: float = 0.0  # largest error, in units of its bound
@@ -41,11 +41,11 @@ def judge_system(system, folder, time_limit=60):
         record = simulate_apart(system, compile_system(system, folder), time_limit)
         outcome.unavailable = record.unavailable
         if record.rejection:
-            outcome.verdict, outcome.message = "refused", record.rejection
+            outcome.verdict, outcome.message = "rejected", record.rejection
         compare(system, record, folder, outcome)
         outcome.regular = True
     except RejectedSystem as error:
-        outcome.verdict, outcome.message = "refused", str(error)
+        outcome.verdict, outcome.message = "rejected", str(error)
     except Wrong as error:
         outcome.verdict, outcome.message = "wrong", str(error)
     except Undecided as error:

@@ -76,19 +76,19 @@ class Derivation:
         potential += sum(self.symbols[c.name] ** 2 for c in system.coordinates if c.part)
         dissipation = sp.sympify(sum(map(self.convert, system.dissipations)))
         forces = [sp.sympify(-sp.diff(dissipation, vi)) for vi in v]
-        self.driven_power = sp.Integer(0)  # of forces whose points have prescribed motions
+        self.prescribed_power = sp.Integer(0)  # of forces whose points have prescribed motions
         for label, force in system.forces:
             forces[[c.name for c in system.coordinates].index(label)] += self.convert(force)
         for label, force in system.cartesian_forces:
             for axis, value in force.items():
-                self.driven_power += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], time)
+                self.prescribed_power += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], time)
                 for i, qi in enumerate(q):
                     forces[i] += self.convert(value) * sp.diff(self.symbols[f"{label}.{axis}"], qi)
         for i, c in enumerate(system.coordinates):
             if c.rate is not None:
                 energy += v[i] ** 2 / 2
                 forces[i] += self.convert(c.rate)
-        constraints = [sp.sympify(self.convert(c)) for c in [*system.constraints, *system.driven_velocities]]
+        constraints = [sp.sympify(self.convert(c)) for c in [*system.constraints, *system.prescribed_velocities]]
         self.mechanics = Mechanics(
             q, v, energy, sp.sympify(potential), forces, inputs=inputs, parameters=parameters, constraints=constraints
         )

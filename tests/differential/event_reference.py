@@ -52,14 +52,14 @@ def parts_in_c(derivation):
     guards = guards_of(derivation)
     flat += [*sets, *(operand for operand, _ in guards)]
     names = [contact.name for contact in contacts]
-    holders = [-1 if f.contact is None else names.index(f.contact) for f in switches.frictions]
+    contacts_of_frictions = [-1 if f.contact is None else names.index(f.contact) for f in switches.frictions]
     constants = len(system.parameters) + INPUT_COEFFICIENTS * len(system.inputs) + 1
-    sizes = dict(N=n, SIZE=size, CONTACTS=len(contacts), FRICTIONS=len(holders), EVENTS=len(switches.events), SETS=len(sets),
+    sizes = dict(N=n, SIZE=size, CONTACTS=len(contacts), FRICTIONS=len(contacts_of_frictions), EVENTS=len(switches.events), SETS=len(sets),
                  GUARDS_HERE=len(guards), FIRST_MODE=constants, PARTS=len(flat) + len(guards))  # fmt: skip
     lines = [f"#define {label} {count}" for label, count in sizes.items()]
-    lines += [f"#define HOLDERS {{{', '.join(map(str, holders or [-1]))}}}"]
+    lines += [f"#define HOLDERS {{{', '.join(map(str, contacts_of_frictions or [-1]))}}}"]
     lines += ["static void parts(real t, const real *y, const real *k, real *p) {", *declarations(derivation)]
-    flags = constants + len(contacts) + len(holders) + len(switches.events)
+    flags = constants + len(contacts) + len(contacts_of_frictions) + len(switches.events)
     lines += [f"real {mode} = k[{flags + i}];" for i, mode in enumerate(switches.modes)]
     statements, texts = in_c(flat)
     lines += statements
@@ -95,7 +95,7 @@ class EventReference:
         self.n, self.size = self.sizes["N"], self.sizes["SIZE"]
         self.contacts, self.frictions = self.system.switches.all_contacts, self.system.switches.frictions
         names = [contact.name for contact in self.contacts]
-        self.holders = [None if f.contact is None else names.index(f.contact) for f in self.frictions]
+        self.contacts_of_frictions = [None if f.contact is None else names.index(f.contact) for f in self.frictions]
 
     # --- One trajectory ---
 
@@ -159,7 +159,7 @@ class EventReference:
     def _row(self):
         p, f = self._look(), self.flags
         # The friction of an open contact has no direction.
-        sliding = [np.nan if h is not None and f.closed[h] == 0 else s for h, s in zip(self.holders, f.sliding)]
+        sliding = [np.nan if h is not None and f.closed[h] == 0 else s for h, s in zip(self.contacts_of_frictions, f.sliding)]
         return [float(x) for x in [*self.state, *f.modes, *p.forces, *f.closed, *sliding]]
 
     # --- Modes after a change ---
@@ -212,7 +212,7 @@ class EventReference:
         along = p.response(p.gradients[i])
         push = -(1 + self.contacts[i].restitution) * p.rates[i] / (p.gradients[i] @ along)
         self.state[self.n :] += push * along
-        for j, holder in enumerate(self.holders):
+        for j, holder in enumerate(self.contacts_of_frictions):
             if holder != i:
                 continue
             across = p.response(p.ways[j])
@@ -253,7 +253,7 @@ class EventReference:
         raise Undecided("the reference finds no combination that is right")
 
     def _is_idle(self, j):
-        return self.holders[j] is not None and self.flags.closed[self.holders[j]] == 0
+        return self.contacts_of_frictions[j] is not None and self.flags.closed[self.contacts_of_frictions[j]] == 0
 
     def _is_idle_right(self, slow):
         """True if each friction of an open contact has direction 1, which stands for all of its directions."""
@@ -285,7 +285,7 @@ class EventReference:
         for j in slow:
             if self._is_idle(j):
                 continue
-            mode, bound = self.flags.sliding[j], p.stictions[j] * (1 if self.holders[j] is None else p.forces[self.holders[j]])
+            mode, bound = self.flags.sliding[j], p.stictions[j] * (1 if self.contacts_of_frictions[j] is None else p.forces[self.contacts_of_frictions[j]])
             if not (mode * p.slips[j] > 0 if mode else abs(p.forces[len(self.contacts) + j]) < bound):
                 return False
         return True

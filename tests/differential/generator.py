@@ -125,10 +125,10 @@ def drive(draw):
     system, (amplitude, rate) = draw.system, (draw.value(0.2, 1.5), draw.value(0.5, 4))
     other = name(draw.choice(system.coordinates).name)
     q, v = coordinate(draw)
-    driven = system.coordinates[-1]
-    driven.acceleration = amplitude * cos(rate * name("time"))
+    prescribed = system.coordinates[-1]
+    prescribed.acceleration = amplitude * cos(rate * name("time"))
     moved = amplitude / node(rate) * (sin(rate * name("time")) - sin(node(rate) * system.plan.start_time))
-    system.driven_velocities.append(v - driven.velocity_start - moved)
+    system.prescribed_velocities.append(v - prescribed.velocity_start - moved)
     system.potentials.append(draw.quantity(0.5, 4) * (q - other) ** 2 / 2)
     body(draw, **{draw.choice("xyz"): q})
     system.work = False  # would include the drive, which the reference does not

@@ -152,7 +152,7 @@ def right_side_in_c(derivation):
         *declarations(derivation),
     ]
     power = (
-        [derivation.driven_power + sum(force * v for force, v, c in zip(mechanics.Q, mechanics.v, system.coordinates) if c.rate is None)] if system.work else []
+        [derivation.prescribed_power + sum(force * v for force, v, c in zip(mechanics.Q, mechanics.v, system.coordinates) if c.rate is None)] if system.work else []
     )
     flat = [
         *mechanics.mass,

@@ -107,7 +107,7 @@ class System:
     forces: list = field(default_factory=list)  # (coordinate's name, expression)
     cartesian_forces: list = field(default_factory=list)  # (body's name, {axis: expression})
     constraints: list = field(default_factory=list)
-    driven_velocities: list = field(default_factory=list)  # each minus the integral of its acceleration: 0 at all times
+    prescribed_velocities: list = field(default_factory=list)  # each minus the integral of its acceleration: 0 at all times
     displacements: list = field(default_factory=list)
     tables: list = field(default_factory=list)
     functions: dict = field(default_factory=dict)  # Function by name
@@ -161,7 +161,7 @@ class System:
         for _, force in self.cartesian_forces:
             yield from force.values()
         yield from self.constraints
-        yield from self.driven_velocities
+        yield from self.prescribed_velocities
         yield from self.definitions.values()
         yield from self.switches.expressions()
         for frame in self.frames:

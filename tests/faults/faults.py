@@ -325,7 +325,7 @@ PLACES = [
     ("if (moved <= continuity_allowed_share(resolution)) return NULL;", "if (isfinite(moved)) return NULL;",
      pytest("test_pieces", "kink_in_a_constraint")),
     ("if (!(jump > continuity_allowed_share(resolution))) return NULL;", "if (isfinite(jump)) return NULL;",
-     pytest("test_switching_refusals", "refusals")),
+     pytest("test_switching_errors", "test_errors")),
     ("if (!*lifts) return true;", "return true;",
      pytest("test_switching_from_outside", "not_zero_behind")),
     ("unsigned surplus = deciding_kinds(parser->scope, quantity->node)",

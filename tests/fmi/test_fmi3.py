@@ -84,7 +84,7 @@ def types(own_systems):
     return "TypesOfAll"
 
 
-def refused(status, call, *words):
+def rejected(status, call, *words):
     with pytest.raises(FMICallException) as raised:
         call(*words)
     assert raised.value.status == status
@@ -175,12 +175,12 @@ def test_event_indicators(opened):
         ball.fmu.getEventIndicators(value, 1)
         assert value[0] == ball.get("eventIndicator[1]")[0] == pytest.approx(height, abs=1e-10)
         ball.fmu.enterEventMode()
-    refused(ERROR, ball.fmu.getEventIndicators, (c_double * 2)(), 2)
+    rejected(ERROR, ball.fmu.getEventIndicators, (c_double * 2)(), 2)
     assert "2 elements; expected 1, the number of event indicators" in ball.messages[-1][2]
     resting = opened("BouncingBall").initialize({"h": 0.0})
     assert resting.fmu.getInt32(resting.vr("ground.closed")) == [1]
     assert resting.get("eventIndicator[1]")[0] == pytest.approx(9.81)
-    refused(ERROR, resting.set, {"eventIndicator[1]": 1.0})
+    rejected(ERROR, resting.set, {"eventIndicator[1]": 1.0})
 
 
 def test_intermediate_update_at_an_event(opened):
@@ -259,15 +259,15 @@ def test_arrays(types, opened):
     instance.set(F=[0.5, 0.25, 0.125])
     np.testing.assert_array_equal(instance.get("F"), [0.5, 0.25, 0.125])
     before = instance.get("F")
-    refused(ERROR, instance.fmu.setFloat64, instance.vr("F"), [1.0])
+    rejected(ERROR, instance.fmu.setFloat64, instance.vr("F"), [1.0])
     assert "1 values; expected 3" in instance.messages[-1][2]
     instance.fmu.reset()
     instance.initialize(dict(F=before))
-    refused(ERROR, instance.fmu.setFloat64, instance.vr("F"), [1.0] * 4)
+    rejected(ERROR, instance.fmu.setFloat64, instance.vr("F"), [1.0] * 4)
     assert "4 values; expected 3" in instance.messages[-1][2]
     instance.fmu.reset()
     instance.initialize(dict(F=before))
-    refused(ERROR, instance.fmu.getFloat64, [instance.vr("F")[0] + 1])
+    rejected(ERROR, instance.fmu.getFloat64, [instance.vr("F")[0] + 1])
     assert "an element of an array" in instance.messages[-1][2]
 
 
@@ -284,9 +284,9 @@ def test_types(types, opened):
     assert instance.fmu.getInt64(instance.vr("solverSteps"))[0] > 0
     for getter, variable in (("getInt32", "solverSteps"), ("getInt64", "count"), ("getBoolean", "a"), ("getFloat64", "on"),
                              ("getInt8", "count"), ("getString", "on"), ("getFloat32", "a")):  # fmt: skip
-        refused(ERROR, getattr(instance.fmu, getter), instance.vr(variable))
+        rejected(ERROR, getattr(instance.fmu, getter), instance.vr(variable))
         assert list(instance.fmu.getBoolean(instance.vr("on"))) == [True], "an instance can be read after an error"
-        refused(ERROR, instance.step, 0.1)
+        rejected(ERROR, instance.step, 0.1)
         instance.fmu.reset()
         instance.initialize()
         instance.fmu.setBoolean(instance.vr("on"), [True])
@@ -352,7 +352,7 @@ def test_states(name, opened):
     assert second.get(*outputs).tobytes() == expected.tobytes()
     for instance, held in ((first, state), (second, restored)):
         instance.fmu.freeFMUState(held)
-    refused(ERROR, second.fmu.deserializeFMUState, b"x" * len(data))
+    rejected(ERROR, second.fmu.deserializeFMUState, b"x" * len(data))
 
 
 @pytest.mark.parametrize(
@@ -414,7 +414,7 @@ def test_errors_in_the_callback_end_the_step(opened):
     importer.names = []
     importer.instance = type("", (), {"get": lambda *names: instance.fmu.reset()})
     importer.names = ["theta"]
-    refused(ERROR, instance.step, 1.0)
+    rejected(ERROR, instance.step, 1.0)
     assert importer.problem.status == ERROR
     assert any("fmi3Reset is not allowed in the state 'intermediate update mode'" in m[2] for m in instance.messages)
     instance.fmu.reset()
@@ -429,7 +429,7 @@ def test_a_discarded_step_changes_nothing(opened):
     strict, early = opened("ParticlePolar").initialize(falling), opened("ParticlePolar", earlyReturnAllowed=True).initialize(falling)
     before = strict.get("r", "theta", "vr")
     for instance in (strict, early):
-        refused(DISCARD, instance.step, 2.0)
+        rejected(DISCARD, instance.step, 2.0)
         assert instance.get("time", "r", "theta", "vr")[1:].tobytes() == before.tobytes() and instance.get("time")[0] == 0.0
         instance.step(0.5)
 
@@ -456,14 +456,14 @@ def test_bad_instances(options, message, opened):
 
 def test_log(opened):
     quiet, loud = opened("ParticlePolar", logging=False).initialize(), opened("ParticlePolar").initialize()
-    refused(ERROR, quiet.step, -1.0)
+    rejected(ERROR, quiet.step, -1.0)
     assert quiet.messages == []
     assert [category for _, category, _ in loud.messages] == ["logEvents", "logEvents"]
     loud.fmu.setDebugLogging(True, ["logStatusError"])
     loud.fmu.reset()
     loud.initialize()
     assert len(loud.messages) == 2
-    refused(ERROR, loud.step, -1.0)
+    rejected(ERROR, loud.step, -1.0)
     assert loud.messages[-1][:2] == (ERROR, "logStatusError")
     loud.fmu.reset()
     loud.fmu.setDebugLogging(True, [])  # all categories

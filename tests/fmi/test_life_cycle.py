@@ -176,15 +176,15 @@ def check(instance, function, state, allowed):
         instance.fmu.setupExperiment()  # required first
     before = len(instance.messages)
     status = call(instance, function, *arguments(instance, function))
-    refused = [text for _, _, text in instance.messages[before:] if "is not allowed in the state" in text]
+    rejected = [text for _, _, text in instance.messages[before:] if "is not allowed in the state" in text]
     if allowed == "x":
         # Allowed calls succeed, except for unknown kinds of status and a NULL state.
         unknown = function in ("fmi2GetStatus", "fmi2GetIntegerStatus", "fmi2GetStringStatus")
         null = function == "fmi2SerializedFMUstateSize"
-        assert not refused
+        assert not rejected
         assert status == (DISCARD if unknown else ERROR if null else 0)
     else:
-        assert status == ERROR and refused and function in refused[0]
+        assert status == ERROR and rejected and function in rejected[0]
 
 
 @pytest.mark.parametrize("function", COMMON_CS)

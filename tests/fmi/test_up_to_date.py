@@ -24,7 +24,7 @@ OSCILLATOR = """<system name="{name}">
   <output name="y">{output}</output><output name="z">x*sqrt(k/m)</output>
   <solver method="{method}"/>
 </system>"""
-DRIVEN = dict(drift='<parameter name="c" start="0.7"/>', force="u + c*time", output="x*time + 2*u + der(v)")
+PRESCRIBED = dict(drift='<parameter name="c" start="0.7"/>', force="u + c*time", output="x*time + 2*u + der(v)")
 LINEAR = dict(drift="", force="u", output="x + 2*u + der(v)")
 FALL = """<system name="FallByErk">
   <coordinate name="x" velocity="v" start="1"/>
@@ -34,7 +34,7 @@ FALL = """<system name="FallByErk">
 </system>"""
 TEXTS = {
     f"OscillatorBy{method.title()}": OSCILLATOR.format(name=f"OscillatorBy{method.title()}", method=method, **words)
-    for method, words in dict(taylor=DRIVEN, erk=DRIVEN, bdf=DRIVEN, exact=LINEAR).items()
+    for method, words in dict(taylor=PRESCRIBED, erk=PRESCRIBED, bdf=PRESCRIBED, exact=LINEAR).items()
 } | {"FallByErk": FALL}
 NAMES = [name for name in TEXTS if name != "FallByErk"]
 

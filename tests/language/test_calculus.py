@@ -109,7 +109,7 @@ def test_integrals_are_right_or_stop(method, open_fmu):
         assert has_stopped == ("s^9" not in text) and instance.time >= 3, text
 
 
-def test_a_parameter_beyond_the_range_is_refused(open_fmu):
+def test_a_parameter_beyond_the_range_is_rejected(open_fmu):
     build_systems("calculus-range", {"Ranged": '<system name="Ranged"><parameter name="L" start="1"/><state name="z" rate="integral(s, 0, L, sin(s))"/></system>'})
     assert open_fmu("Ranged").initialize({"L": 4}).get("der(z)") == pytest.approx(1 - np.cos(4), rel=1e-11)
     with (instance := open_fmu("Ranged")).fails(ERROR, "the rate of 'z' is not finite, .* or an integral leaves the range that lagc has named"):
@@ -124,8 +124,8 @@ def test_a_parameter_beyond_the_range_is_refused(open_fmu):
     ("integral(s, 0, 1, cos(s + x))", 10, r"note: .* is exact to 1e-13 by \d+ nodes near the start values"),
 ])  # fmt: skip
 def test_ranges_are_named(tmp_path, expression, stop, message):
-    said = said_of(tmp_path, f'<output name="o">{expression}</output><experiment stopTime="{stop}"/>').stderr
-    assert re.search(message, said), said
+    messages = messages_of(tmp_path, f'<output name="o">{expression}</output><experiment stopTime="{stop}"/>').stderr
+    assert re.search(message, messages), messages
 
 
 def test_a_function_of_an_integral_with_a_range(tmp_path):
@@ -146,21 +146,21 @@ def test_shapes_of_many_sines_stay_small(tmp_path):
     assert result.returncode == 0, result.stderr
 
 
-def said_of(tmp_path, content):
+def messages_of(tmp_path, content):
     (tmp_path / "system.xml").write_text(f'<system name="X">\n{HEAD}{content}</system>')
     return lagc("system.xml", "-o", "out", cwd=tmp_path)
 
 
 @pytest.mark.parametrize("expression, nodes", [("s^5*x", 3), ("s^6*x", 4), ("s^2*sqrt(p)*v", 2), ("x*y", 1), ("s^15 + y", 8)])
 def test_as_many_nodes_as_the_degree_needs(tmp_path, expression, nodes):
-    result = said_of(tmp_path, f'<output name="o">integral(s, 0, 2, {expression})</output>')
+    result = messages_of(tmp_path, f'<output name="o">integral(s, 0, 2, {expression})</output>')
     assert re.findall(r"system.xml:2: note: integral\(s, 0, 2, (.*)\) is exact to 1e-13 by (\d+) node", result.stderr) == [(expression, str(nodes))]
 
 
 def test_parameters_that_are_0_hide_nothing(tmp_path):
     """q = 0 at the start may be tuned, so that s^10 needs 6 nodes. The search respects min = 0 and tries no root of a negative number."""
     content = '<parameter name="q" start="0" min="0"/><output name="o">integral(s, 0, 1, q*s^10 + sqrt(q))</output>'
-    assert "is exact to 1e-13 by 6 nodes" in said_of(tmp_path, content).stderr
+    assert "is exact to 1e-13 by 6 nodes" in messages_of(tmp_path, content).stderr
 
 
 @pytest.mark.parametrize("integrand, low, high", [
@@ -170,15 +170,15 @@ def test_parameters_that_are_0_hide_nothing(tmp_path):
 def test_features_between_few_nodes_are_not_called_exact(tmp_path, integrand, low, high):
     """One central node gives 0 or a symmetric value of these integrands, which is wrong. lagc then does not call the integral exact."""
     text = integrand.replace("<", "&lt;")
-    said = said_of(tmp_path, f'<output name="o">integral(s, {low}, {high}, {text})</output>').stderr
-    assert "note:" not in said and "has a relative error of" in said, said
+    messages = messages_of(tmp_path, f'<output name="o">integral(s, {low}, {high}, {text})</output>').stderr
+    assert "note:" not in messages and "has a relative error of" in messages, messages
 
 
 def test_a_kink_is_named_with_its_error(tmp_path):
-    result = said_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x))</output>')
+    result = messages_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x))</output>')
     share = re.search(r"warning: integral\(s, 0, 1, abs\(s - 0.3\*x\)\) has a relative error of (\S+) by 32 nodes", result.stderr)
     assert result.returncode == 0 and 1e-6 < float(share.group(1)) < 0.1
-    assert "warning: integral" not in said_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x), 5)</output>').stderr
+    assert "warning: integral" not in messages_of(tmp_path, '<output name="o">integral(s, 0, 1, abs(s - 0.3*x), 5)</output>').stderr
 
 
 @pytest.mark.parametrize("expression, message", [
@@ -201,16 +201,16 @@ def test_a_kink_is_named_with_its_error(tmp_path):
     ("integral(3, 0, x, 1)", "expected a name as the variable of integral(name, from, to, expression)"),
 ])  # fmt: skip
 def test_messages(tmp_path, expression, message):
-    result = said_of(tmp_path, f'<mode name="m"/><constant name="c" value="2"/><define name="o">{expression}</define><define name="d">2*x</define><define name="later">x</define>')
+    result = messages_of(tmp_path, f'<mode name="m"/><constant name="c" value="2"/><define name="o">{expression}</define><define name="d">2*x</define><define name="later">x</define>')
     assert result.returncode == 1 and message in result.stderr
 
 
 def test_names_of_functions_that_are_free(tmp_path):
-    result = said_of(tmp_path, '<state name="integral" rate="x"/><define name="diff">integral(s, 0, 1, s)*integral</define><output name="o">diff(diff, x) + diff</output>')
+    result = messages_of(tmp_path, '<state name="integral" rate="x"/><define name="diff">integral(s, 0, 1, s)*integral</define><output name="o">diff(diff, x) + diff</output>')
     assert "is by an expression" not in result.stderr and result.returncode == 0, result.stderr
 
 
 def test_units(tmp_path):
     text = '<parameter name="l" start="2" unit="m"/><parameter name="k" start="3" unit="N/m"/><coordinate name="z" velocity="vz" unit="m"/><particle mass="1" z="z"/>'
-    assert said_of(tmp_path, text + '<potential>integral(s, 0, l, k*s)</potential><force coordinate="z">-diff(k*z^2/2, z)</force>').returncode == 0
-    assert "has the unit" in said_of(tmp_path, text + "<potential>integral(s, 0, l, k*s^2)</potential>").stderr
+    assert messages_of(tmp_path, text + '<potential>integral(s, 0, l, k*s)</potential><force coordinate="z">-diff(k*z^2/2, z)</force>').returncode == 0
+    assert "has the unit" in messages_of(tmp_path, text + "<potential>integral(s, 0, l, k*s^2)</potential>").stderr

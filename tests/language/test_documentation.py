@@ -78,5 +78,5 @@ def test_a_formula_that_is_cut_off_is_shown_as_text(tmp_path):
 
 
 def test_a_law_of_energy_ends_at_impacts():
-    tells = {name: "This holds between events" in page_of(fmu.unpacked(name)).read_text() for name in ("BouncingBall", "SimplePendulum")}
-    assert tells == {"BouncingBall": True, "SimplePendulum": False}
+    reports = {name: "This holds between events" in page_of(fmu.unpacked(name)).read_text() for name in ("BouncingBall", "SimplePendulum")}
+    assert reports == {"BouncingBall": True, "SimplePendulum": False}

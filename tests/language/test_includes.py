@@ -158,16 +158,16 @@ def test_the_outer_include_wins_attribute_by_attribute(tmp_path):
     assert result.returncode == 0 and result.stderr == "", result.stderr
     variables = {v.name: v for v in read_model_description(tmp_path / "out").modelVariables}
     number = lambda text: None if text is None else float(text)
-    said = lambda name: tuple(number(getattr(variables[f"e.d{name}"], what)) for what in ("start", "min", "max"))
+    messages = lambda name: tuple(number(getattr(variables[f"e.d{name}"], what)) for what in ("start", "min", "max"))
     for cell, x, v, m, k, s, F in [
         ("[1].c[1]", 0.7, -0.4, (1.5, 1, 4), None, None, (0.2, -1, 2)),
         ("[1].c[2]", 0.8, -0.8, (3, 1, 4), 9, 1, (0.2, -3, 2)),
         ("[2].c[1]", 0.7, -0.4, (1.5, 1, 4), None, None, (0.2, -1, 2)),
         ("[2].c[2]", 1.6, -2, (3, 1, 3.5), 9, 2, (0.4, -3, 2)),
     ]:
-        assert (said(f"{cell}.x")[0], said(f"{cell}.v")[0]) == (x, v)
-        assert said(f"{cell}.m") == m and said(f"{cell}.F") == F
-        assert said(f"{cell}.k") == (k, None, None) and said(f"{cell}.s") == (s, 0.5 if s else None, None)
+        assert (messages(f"{cell}.x")[0], messages(f"{cell}.v")[0]) == (x, v)
+        assert messages(f"{cell}.m") == m and messages(f"{cell}.F") == F
+        assert messages(f"{cell}.k") == (k, None, None) and messages(f"{cell}.s") == (s, 0.5 if s else None, None)
         assert (variables[f"e.d{cell}.s"].causality == "parameter") == (s is not None)
     system = (tmp_path / "out" / "system.c").read_text()
     assert "32.0" in system and "56.0" in system  # k = 8 N of the cells with N = 4 and N = 7

@@ -332,7 +332,7 @@ def rows(title):
     """Pairs (line, message) of a table of the reference."""
     part = REFERENCE[REFERENCE.index(title) :]
     table = re.search(r"\| line \| message \|\n.*?\n((?:\|.*\n)+)", part).group(1)
-    return [(line.replace("\\|", "|"), said.replace("\\|", "|")) for line, said in re.findall(r"^\| `(.*?)` \| `(.*?)` \|$", table, re.M)]
+    return [(line.replace("\\|", "|"), messages.replace("\\|", "|")) for line, messages in re.findall(r"^\| `(.*?)` \| `(.*?)` \|$", table, re.M)]
 
 
 def compile_with(line, folder):

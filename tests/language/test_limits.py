@@ -27,7 +27,7 @@ def loops(*bounds, content="<potential>x</potential>"):
 
 
 STEPS = "the system is too large: more than 100000000 steps to read and derive it"
-REFUSED = {
+REJECTED = {
     "an index beyond whole numbers": (loops(("1e17", "1e17")), "system.xml:4: <for> from .* expected whole numbers below 1e9"),
     "an index that cannot be counted on": (loops(("1e16", "1e16+1")), "system.xml:4: <for> from .* expected whole numbers below 1e9"),
     "an index far below 0": (loops(("-1e9", "-1e9")), "system.xml:4: <for> from .* expected whole numbers below 1e9"),
@@ -41,7 +41,7 @@ REFUSED = {
 }  # fmt: skip
 
 
-REFUSED |= {
+REJECTED |= {
     "outputs in a chain": (
         '<output name="o[0]">x</output>' + loops(("1", "9999"), content='<output name="o[i]">sin(o[i-1])</output>'),
         "the generated code needs more than 100000000 steps"),
@@ -66,7 +66,7 @@ def seconds_of_children():
     return usage.ru_utime + usage.ru_stime
 
 
-@pytest.mark.parametrize("text, message", REFUSED.values(), ids=REFUSED)
+@pytest.mark.parametrize("text, message", REJECTED.values(), ids=REJECTED)
 def test_limits(text, message, tmp_path):
     before = seconds_of_children()
     result = compile_with(text, tmp_path)

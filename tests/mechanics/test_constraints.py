@@ -338,8 +338,8 @@ def test_start_values_are_moved_least(open_fmu):
     direction = np.array([-0.9, 0.1]) / length
     rest = np.array([0.3, 0.2]) - direction * (direction @ [0.3, 0.2])
     np.testing.assert_allclose(instance.get("x", "y", "vx", "vy"), [*direction, *rest], atol=1e-13)
-    told = [text for _, _, text in instance.messages if "moved to fulfil" in text]
-    assert len(told) == 1 and "x from -0.9 to -0.99388" in told[0]
+    reported = [text for _, _, text in instance.messages if "moved to fulfil" in text]
+    assert len(reported) == 1 and "x from -0.9 to -0.99388" in reported[0]
 
 
 def test_fixed_start_values_stay(open_fmu):
@@ -443,8 +443,8 @@ def test_limit_of_a_mechanism(open_fmu):
         instance.step(0.01)
     with instance.fails(DISCARD, "stopped at time 4.88"):
         instance.step(0.1)
-    told = " ".join(text for status, _, text in instance.messages if status == 2)
-    assert ("'pull'" in told or "'line'" in told) and "limit of a mechanism" in told
+    reported = " ".join(text for status, _, text in instance.messages if status == 2)
+    assert ("'pull'" in reported or "'line'" in reported) and "limit of a mechanism" in reported
     assert all(np.isfinite(instance.get("p", "q", "vp", "vq")))
 
 

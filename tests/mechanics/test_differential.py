@@ -124,8 +124,8 @@ def test_reference_sees_a_hill(width, tmp_path):
     shape = name("q1") / node(width)
     (q, v), doubt = follow(oscillator(shape / (2 * node(width)) * exp(-(shape**2)), start=(-1.0, 1.0)), tmp_path)
     s = np.linspace(-10, 10, 4001)  # the trapezoidal rule converges exponentially
-    lost = width * np.trapezoid(1 / np.sqrt(1 - 0.5 * np.exp(-(s**2))) - 1, s)
-    assert doubt < 1e-13 and v == pytest.approx(1, abs=1e-14) and q == pytest.approx(1 - lost, abs=1e-13)
+    loss = width * np.trapezoid(1 / np.sqrt(1 - 0.5 * np.exp(-(s**2))) - 1, s)
+    assert doubt < 1e-13 and v == pytest.approx(1, abs=1e-14) and q == pytest.approx(1 - loss, abs=1e-13)
 
 
 def test_reference_sees_a_kink(tmp_path):

@@ -52,7 +52,7 @@ def test_work_of_drives_in_a_chain(cranes, open_fmu):
     assert max(np.abs(works)) > 1
 
 
-DRIVEN_SPRING = """<system name="DrivenSpring">
+PRESCRIBED_SPRING = """<system name="DrivenSpring">
   <parameter name="m" start="2" unit="kg"/>
   <parameter name="k" start="18" unit="N/m"/>
   <input name="u" unit="m/s2"/>
@@ -67,7 +67,7 @@ DRIVEN_SPRING = """<system name="DrivenSpring">
 
 def test_linear_systems_with_drives(open_fmu):
     """y'' = -u - 9 y: y = -u/9 (1 - cos 3 t), by the exact method for linear systems."""
-    fmu.build_systems("drivenspring", {"DrivenSpring": DRIVEN_SPRING.format("u")})
+    fmu.build_systems("drivenspring", {"DrivenSpring": PRESCRIBED_SPRING.format("u")})
     instance = open_fmu("DrivenSpring").initialize({"u": 4.5})
     instance.step(2.0)
     assert instance.get("x") == pytest.approx(9.0, rel=1e-12)
@@ -76,7 +76,7 @@ def test_linear_systems_with_drives(open_fmu):
 
 
 def test_linear_systems_are_not_driven_by_time(tmp_path):
-    (tmp_path / "system.xml").write_text(DRIVEN_SPRING.format("9.81*sin(time)"))
+    (tmp_path / "system.xml").write_text(PRESCRIBED_SPRING.format("9.81*sin(time)"))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 1 and re.search(r"der\(v\) depends on time; expected a method other than 'exact'", result.stderr)
 

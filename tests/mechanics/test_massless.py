@@ -224,7 +224,7 @@ def test_model_exchange(open_fmu):
     assert instance.fmu.completedIntegratorStep()[0] in (0, False)
 
 
-REFUSED = [
+REJECTED = [
     ('<constraint name="c">x - y</constraint>', "the coordinate 'a' has no inertia: no mass moves with it"),
     ('<constraint name="c">x - a - b</constraint>', "the velocity of 'v(a|b)' is not independent"),
     ('<constraint name="c">x - a*b</constraint><constraint name="d">y - 2*a*b</constraint>', "the velocity of 'v(a|b)' is not independent"),
@@ -232,7 +232,7 @@ REFUSED = [
 ]
 
 
-@pytest.mark.parametrize("lines, message", REFUSED)
+@pytest.mark.parametrize("lines, message", REJECTED)
 def test_errors(lines, message, tmp_path):
     import re
 

@@ -71,7 +71,7 @@ def held(t, state):
     return [v, (5 * (z - q) - 0.3 * v) / 2, np.cos(t) - z]
 
 
-def derive_turned():
+def derive_rotated():
     t, a, *symbols = sympy.symbols("t a TH W Z Y")
     th, z, y = (sympy.Function(name)(t) for name in ("th", "z", "y"))
     rates = {z.diff(t): 0.4 * sympy.sin(th) + 0.2 * y, y.diff(t): th.diff(t) - y}
@@ -106,7 +106,7 @@ def built():
 @pytest.mark.parametrize("name", SYSTEMS)
 def test_motion(name, open_fmu):
     rates, names = REFERENCES[name]
-    rates, names, end = rates or derive_turned(), names.split(), None
+    rates, names, end = rates or derive_rotated(), names.split(), None
     for method in METHODS:
         for steps in (1, 100):
             instance = open_fmu(f"{name}_{method}").initialize()

@@ -42,7 +42,7 @@ SAME = """
 </system>
 """
 # A driven crank turns two wheels, one of which has two constraints.
-DRIVEN = """
+PRESCRIBED = """
 <system name="DrivenTwice">
   <coordinate name="t" velocity="w" velocityStart="2" acceleration="0.5"/>
   <coordinate name="p" velocity="vp"/>
@@ -54,7 +54,7 @@ DRIVEN = """
 """
 SCALES = {"Plate": 1.0, "PlateInMillimetres": 1000.0, "PlateInKilometres": 1e-3}
 SYSTEMS = {name: PLATE.replace('"Plate"', f'"{name}"').format(scale=scale) for name, scale in SCALES.items()}
-SYSTEMS |= {"Same": SAME, "DrivenTwice": DRIVEN}
+SYSTEMS |= {"Same": SAME, "DrivenTwice": PRESCRIBED}
 ATTACHED = np.array([-0.5, -0.1, 0.3, 0.6])
 
 

@@ -128,13 +128,13 @@ def test_copies_in_other_units(open_fmu):
 def jacobian_in_space():
     q = sp.symbols(STATES)
     bodies = [q[6 * i : 6 * i + 6] for i in range(3)]
-    turns = [sp.rot_ccw_axis3(b[3]) * sp.rot_ccw_axis1(b[4]) * sp.rot_ccw_axis2(b[5]) for b in bodies]
-    ends = [[sp.Matrix(b[:3]) + sign * R[:, 0] * l / 2 for sign in (-1, 1)] for b, R, l in zip(bodies, turns, LENGTHS)]
+    rotations = [sp.rot_ccw_axis3(b[3]) * sp.rot_ccw_axis1(b[4]) * sp.rot_ccw_axis2(b[5]) for b in bodies]
+    ends = [[sp.Matrix(b[:3]) + sign * R[:, 0] * l / 2 for sign in (-1, 1)] for b, R, l in zip(bodies, rotations, LENGTHS)]
     rows = []
     for i, j in JOINTS.values():
         near, far = ends[i][1] if i is not None else sp.zeros(3, 1), ends[j][0] if j is not None else sp.Matrix([GROUND, 0, 0])
         rows += [*(near - far)]
-        axes = turns[i].T * turns[j][:, 2] if None not in (i, j) else turns[j if i is None else i][:, 2]
+        axes = rotations[i].T * rotations[j][:, 2] if None not in (i, j) else rotations[j if i is None else i][:, 2]
         rows += [*axes[:2]]
     return sp.lambdify(q, sp.Matrix(rows).jacobian(q))
 

@@ -52,8 +52,8 @@ def test_jacobian(name, fmi, capfd):
             by_differences = (moved[0] - moved[1]) / (2 * step)
             scale = 1 + abs(by_differences)
             assert (abs(np.array(casadi.DM(jacobian))[:, column] - by_differences) / scale).max() < 1e-6, (words, column)
-    said = capfd.readouterr()
-    assert "logStatus" not in said.out + said.err
+    messages = capfd.readouterr()
+    assert "logStatus" not in messages.out + messages.err
 
 
 @pytest.mark.parametrize("name", NAMES)

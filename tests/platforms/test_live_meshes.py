@@ -44,9 +44,9 @@ def test_triangles(page):
     """All triangles of a small mesh, to a 65536th of its size; those of a large one lie on it. Shapes that are not drawn are absent."""
     die, ring, twin = page.evaluate(MESHES)
     faces = np.array(TETRAHEDRON)[triangles_of(TETRAHEDRON)] * [0.5, 0.5, -0.5]
-    turned = Rotation.from_euler("xyz", [0.3, 0, 0.5]).apply(faces.reshape(-1, 3)) + [0.1, 0, 0]
+    rotated = Rotation.from_euler("xyz", [0.3, 0, 0.5]).apply(faces.reshape(-1, 3)) + [0.1, 0, 0]
     drawn = np.array(die["corners"]).reshape(-1, 3, 3)
-    for face in turned.reshape(-1, 3, 3):
+    for face in rotated.reshape(-1, 3, 3):
         assert min(np.abs(np.roll(face[::-1], k, axis=0) - other).max() for other in drawn for k in range(3)) < 1e-5
     assert len(drawn) == 4 and (die["color"], die["opacity"]) == ("e02080", 1)
     corners = np.array(ring["corners"]) + [0, 0, 0.2]
@@ -62,5 +62,5 @@ def test_triangles(page):
 def test_a_page_that_changes_systems(tmp_path):
     (tmp_path / "die.stl").write_bytes(b"\xff")
     (tmp_path / "system.xml").write_text(DRAWN)
-    with pytest.raises(Problem, match="system.xml names the mesh die.stl, which an editable page cannot contain"):
+    with pytest.raises(Problem, match="system.xml uses the mesh die.stl, which an editable page cannot contain"):
         files_of(tmp_path / "system.xml")

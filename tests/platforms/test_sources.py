@@ -174,7 +174,7 @@ def test_fast_math_is_an_error_in_every_source():
 
 def test_only_functions_of_every_c_library():
     """Windows' C library lacks some functions of C11 and of POSIX, so FMUs, ensembles and sweeps use none of them."""
-    lacking = r"\b(aligned_alloc|posix_memalign|memalign|strndup|strdup|asprintf|clock_gettime|gmtime_r|random)\("
+    missing = r"\b(aligned_alloc|posix_memalign|memalign|strndup|strdup|asprintf|clock_gettime|gmtime_r|random)\("
     files = [path for room in ("src/runtime", "src/ensemble", "include") for path in (ROOT / room).rglob("*.[ch]")]
-    used = {str(path): found for path in [*files, ROOT / "scripts" / "sweep_runs.c"] if (found := re.findall(lacking, path.read_text()))}
+    used = {str(path): found for path in [*files, ROOT / "scripts" / "sweep_runs.c"] if (found := re.findall(missing, path.read_text()))}
     assert len(files) > 100 and used == {}

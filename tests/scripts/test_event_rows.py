@@ -38,13 +38,13 @@ def test_bounces(of):
     motion = simulate(of.archive("BouncingBall"), {"h": 1.0, "e": 0.8}, **words).outputs
     fall, e = math.sqrt(2 / 9.81), 0.8
     bounces = [fall * (1 + 2 * sum(e**k for k in range(1, i + 1))) for i in range(3)]
-    behind = np.flatnonzero(np.diff(motion["time"]) == 0) + 1
-    np.testing.assert_allclose(motion["time"][behind], bounces, atol=1e-10)
-    np.testing.assert_allclose(motion["v"][behind - 1], [-9.81 * fall * e**k for k in range(3)], rtol=1e-9)
-    np.testing.assert_allclose(motion["v"][behind], [9.81 * fall * e ** (k + 1) for k in range(3)], rtol=1e-9)
-    np.testing.assert_allclose(motion["h"][behind], 0, atol=1e-9)
+    after = np.flatnonzero(np.diff(motion["time"]) == 0) + 1
+    np.testing.assert_allclose(motion["time"][after], bounces, atol=1e-10)
+    np.testing.assert_allclose(motion["v"][after - 1], [-9.81 * fall * e**k for k in range(3)], rtol=1e-9)
+    np.testing.assert_allclose(motion["v"][after], [9.81 * fall * e ** (k + 1) for k in range(3)], rtol=1e-9)
+    np.testing.assert_allclose(motion["h"][after], 0, atol=1e-9)
     even = simulate(of.archive("BouncingBall"), {"h": 1.0, "e": 0.8}, record_events=False, **words).outputs
-    others = np.setdiff1d(np.arange(len(motion)), [*behind, *(behind - 1)])
+    others = np.setdiff1d(np.arange(len(motion)), [*after, *(after - 1)])
     assert even["time"].tolist() == np.arange(0, 2.1, 0.25).tolist() and motion[others].tobytes() == even.tobytes()
 
 
@@ -52,9 +52,9 @@ def test_bounces(of):
 def test_a_force_that_switches(of):
     """At 0.35 s the acceleration changes from 1 to -3; the velocity is 0.35 in both rows."""
     motion = simulate(of.archive("Switched"), {}).outputs
-    [behind] = np.flatnonzero(np.diff(motion["time"]) == 0) + 1
-    assert motion["time"][behind] == pytest.approx(0.35, abs=1e-9) and motion["a"][[behind - 1, behind]].tolist() == [1, -3]
-    np.testing.assert_allclose(motion["v"][[behind - 1, behind]], 0.35, atol=1e-9)
+    [after] = np.flatnonzero(np.diff(motion["time"]) == 0) + 1
+    assert motion["time"][after] == pytest.approx(0.35, abs=1e-9) and motion["a"][[after - 1, after]].tolist() == [1, -3]
+    np.testing.assert_allclose(motion["v"][[after - 1, after]], 0.35, atol=1e-9)
     assert len(motion) == 11 + 2
 
 

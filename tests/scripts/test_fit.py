@@ -423,8 +423,8 @@ def test_command(tmp_path):
     assert re.search(r"^k  (61\.0|60\.9)\d+ \+- 0\.0\d+$", result.stdout, re.M)
     page = (tmp_path / "out" / "Oscillator-fit.html").read_text()
     assert "data:image/png" in page and "95 % interval" in page
-    refused = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "kk", cwd=tmp_path)
-    assert refused.returncode == 1 and "'kk' is not a parameter, a start value or an input" in refused.stderr
+    rejected = package.run(folder, "fit", fmu.archive("Oscillator"), "data.csv", "--vary", "kk", cwd=tmp_path)
+    assert rejected.returncode == 1 and "'kk' is not a parameter, a start value or an input" in rejected.stderr
 
 
 def test_the_fitted_system(lagrange_fmu, tmp_path):

@@ -506,5 +506,5 @@ for words in ({"speed": ["v"]}, {"start": {"y": 1}}, {"speeds": [1]}, {"start": 
 def test_names_for_symbols_of_sympy(tmp_path):
     printed = succeed(package.python(package.assemble(tmp_path / "package"), "-c", NAMES, cwd=tmp_path))
     assert '<coordinate name="x" velocity="v" start="2.0" velocityStart="3.0" unit="m" />' in printed
-    for message in ("'speed' is not an option of from_sympy; did you mean 'speeds'?", "y is not a coordinate, velocity, state or input of this LagrangesMethod; ", "1 is no speed", "are a list; expected a dict"):
+    for message in ("'speed' is not an option of from_sympy; did you mean 'speeds'?", "y is not a coordinate, velocity, state or input of this LagrangesMethod; ", "1 is not a speed", "are a list; expected a dict"):
         assert message in printed

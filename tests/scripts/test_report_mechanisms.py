@@ -75,10 +75,10 @@ def test_errors():
 def test_angles_of_the_squeezer():
     """Bodies that rotate together keep their relative angles."""
     value = fmu.start_values("AndrewsSqueezer")
-    turned = np.zeros((1, 21))
-    turned[0, 2::3] = [0.1, 0.1, 0.2, 0.3, 0.3, 0.4, 0.5]
+    rotated = np.zeros((1, 21))
+    rotated[0, 2::3] = [0.1, 0.1, 0.2, 0.3, 0.3, 0.4, 0.5]
     expected = [0.1, 0.0, 0.2, 0.0, 0.3, -0.1, 0.5]
-    assert squeezer_angles(turned)[0] == pytest.approx([value[name] + d for name, d in zip(ANGLES, expected)], abs=1e-15)
+    assert squeezer_angles(rotated)[0] == pytest.approx([value[name] + d for name, d in zip(ANGLES, expected)], abs=1e-15)
 
 
 @pytest.mark.parametrize("problem, largest", [(PENDULUM, 1e-7), (SQUEEZER, 1e-9), (KNIFE_EDGE, 1e-7)], ids=lambda value: getattr(value, "system", ""))

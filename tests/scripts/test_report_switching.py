@@ -41,9 +41,9 @@ def test_swings_to_the_stop():
     height = lambda angle: 1 - math.cos(angle)
     kept = 0.81 * (height(1.0) - height(0.2)) + height(0.2)
     second = float(quarter(PENDULUM.all_values, math.sqrt(kept / 2)))
-    at_stop, turned, again = positions(PENDULUM, first, first + second, first + 2 * second)
+    at_stop, rotated, again = positions(PENDULUM, first, first + second, first + 2 * second)
     assert (at_stop, again) == pytest.approx((-0.2, -0.2), abs=1e-12)
-    assert height(turned) == pytest.approx(kept, rel=1e-12)
+    assert height(rotated) == pytest.approx(kept, rel=1e-12)
 
 
 def test_slips():

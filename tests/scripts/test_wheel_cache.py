@@ -78,27 +78,27 @@ with caching.first_build("win64", lambda text: print(text, flush=True)):
 """
     first = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
     assert first.stdout.readline().startswith("compiling for win64; the first time")
-    told, waits = [], threading.Event()
+    reported, waits = [], threading.Event()
 
     def second_build():
-        with caching.first_build("win64", lambda text: (told.append(text), waits.set())):
-            told.append("built")
+        with caching.first_build("win64", lambda text: (reported.append(text), waits.set())):
+            reported.append("built")
 
     second = threading.Thread(target=second_build)
     second.start()
-    assert waits.wait(20) and told == ["another build compiles the C library of win64; waiting for it to end ..."]
+    assert waits.wait(20) and reported == ["another build compiles the C library of win64; waiting for it to end ..."]
     first.communicate("go on\n", timeout=20)
     second.join(20)
-    assert told[1:] == ["built"]
-    with caching.first_build("win64", told.append):
+    assert reported[1:] == ["built"]
+    with caching.first_build("win64", reported.append):
         pass
-    assert len(told) == 2
+    assert len(reported) == 2
 
 
 def test_a_first_build_that_fails_is_not_the_last(caching):
-    told = []
+    reported = []
     for _ in range(2):
-        with pytest.raises(ValueError), caching.first_build("win64", told.append):
+        with pytest.raises(ValueError), caching.first_build("win64", reported.append):
             raise ValueError
-    assert [text.split(";")[0] for text in told] == ["compiling for win64", "compiling for win64"]
+    assert [text.split(";")[0] for text in reported] == ["compiling for win64", "compiling for win64"]
     assert not Path(caching.folder() / "ready-win64").exists()

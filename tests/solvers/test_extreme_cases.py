@@ -8,10 +8,10 @@ from extreme_cases import CASES, co_simulate, exchange_model
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_co_simulation(case):
     outcome = co_simulate(case)
-    assert outcome.verdict == ("right" if case.refused is None else "refused"), outcome
+    assert outcome.verdict == ("right" if case.rejected is None else "rejected"), outcome
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if case.exchange is not None], ids=lambda case: case.name)
 def test_model_exchange(case):
     outcome = exchange_model(case)
-    assert outcome.verdict == ("right" if case.exchange else "refused"), outcome
+    assert outcome.verdict == ("right" if case.exchange else "rejected"), outcome

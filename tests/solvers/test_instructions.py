@@ -59,7 +59,7 @@ def motion_and_messages(form, folder):
         steps = instance.fmu.getInteger(instance.vr("solverSteps", "derivativeEvaluations", "events"))
         along = instance.fmu.getDirectionalDerivative(instance.vr("far", "der(v)"), instance.vr("x", "p", "y"), [0.3, 0.7, -0.4])
         along += instance.fmu.getRealOutputDerivatives(instance.vr("far", "push"), [1, 1])
-        told = []
+        reported = []
         for values in ({"r": 0.0}, {"k": 0.0, "x": 0.0}, {"k": 0.05 * (1 + 3e-15), "x": 0.0, "r": 1.0}):
             instance.reset()
             instance.fmu.setupExperiment(startTime=0.0)
@@ -67,10 +67,10 @@ def motion_and_messages(form, folder):
             instance.fmu.enterInitializationMode()
             with pytest.raises(FMICallException):
                 instance.get("der(v)")
-            told.append(instance.problem())
+            reported.append(instance.problem())
     finally:
         instance.free()
-    return rows, steps, along, told
+    return rows, steps, along, reported
 
 
 def test_tables_equal_statements(tmp_path):
@@ -95,14 +95,14 @@ def test_slopes_of_accelerations_are_the_same(tmp_path):
 
 def test_an_angle_jumps_where_it_does(tmp_path):
     """The force is -pi + arctan((x - 0.2)/(-1 - x)) before the jump, and larger by 2 pi after it; its work is the integral."""
-    before, behind = (quad(lambda x, turn=turn: turn + atan((x - 0.2) / (-1 - x)), a, b)[0] for turn, a, b in ((-pi, 0, 0.2), (pi, 0.2, 1)))
+    before, after = (quad(lambda x, turn=turn: turn + atan((x - 0.2) / (-1 - x)), a, b)[0] for turn, a, b in ((-pi, 0, 0.2), (pi, 0.2, 1)))
     rows = []
     for form in ("statements", "tables"):
         instance = built(TURN, form, tmp_path / form)
         try:
             rows.append(instance.initialize().run(0.5, 0.5, "x", "v")[-1][1:] + instance.fmu.getInteger(instance.vr("solverSteps")))
             x, v = rows[-1][:2]
-            to_x = behind - quad(lambda x: pi + atan((x - 0.2) / (-1 - x)), x, 1)[0]
+            to_x = after - quad(lambda x: pi + atan((x - 0.2) / (-1 - x)), x, 1)[0]
             assert v**2 / 2 == pytest.approx(2 + before + to_x, abs=1e-7) and x > 0.3
         finally:
             instance.free()

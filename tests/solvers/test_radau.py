@@ -162,8 +162,8 @@ def test_row_of_masses(n, factors, open_fmu):
             shape = np.sin(np.pi * np.arange(1, n + 1) / (n + 1))
             np.testing.assert_allclose(found, exact * shape, atol=20 * tolerance)
     # The dampers dissipate the energy of the springs, share k / 2 times the sum of the squares.
-    lost = share * 1e4 / 2 * (n + 1) / 2 * (exact**2 - 1) + instance.get("kineticEnergy")
-    assert instance.get("nonConservativeWork") == pytest.approx(lost, rel=1e-6)
+    loss = share * 1e4 / 2 * (n + 1) / 2 * (exact**2 - 1) + instance.get("kineticEnergy")
+    assert instance.get("nonConservativeWork") == pytest.approx(loss, rel=1e-6)
 
 
 def test_particles_in_a_magnetic_field(open_fmu):

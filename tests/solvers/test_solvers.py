@@ -91,9 +91,9 @@ def test_many_steps_give_a_warning(open_fmu):
     """A communication step of 50000 steps logs one warning and succeeds."""
     instance = open_fmu("Oscillator").initialize(tolerance=1e-8)
     instance.step(40.0)
-    told = [(status, text) for status, _, text in instance.messages if "maxSteps" in text]
-    assert len(told) == 1 and told[0][0] == 1
-    limit = re.search(r"has taken 50000 steps from time 0 .* stops after (\d+), which maxSteps .* can change ", told[0][1])
+    reported = [(status, text) for status, _, text in instance.messages if "maxSteps" in text]
+    assert len(reported) == 1 and reported[0][0] == 1
+    limit = re.search(r"has taken 50000 steps from time 0 .* stops after (\d+), which maxSteps .* can change ", reported[0][1])
     assert 5e6 < int(limit[1]) < 1e8  # 10 s at 0.1 to 2 microseconds per step
     assert instance.get("x") == pytest.approx(math.cos(4e5), abs=1e-2)
 

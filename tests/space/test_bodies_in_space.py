@@ -113,8 +113,8 @@ def test_one_body_in_three_ways(open_fmu):
         expected = held.get("der(vx0)", "der(vy0)", "der(vz0)")
         for instance in (angles, parts):
             np.testing.assert_allclose(instance.get("place.ax", "place.ay", "place.az"), expected, rtol=1e-9, atol=1e-9)
-        turns = [f"body.{name}{axis}" for name in ("omega", "alpha") for axis in "XYZ"]
-        np.testing.assert_allclose(angles.get(*turns), parts.get(*turns), rtol=1e-9, atol=1e-9)
+        rotations = [f"body.{name}{axis}" for name in ("omega", "alpha") for axis in "XYZ"]
+        np.testing.assert_allclose(angles.get(*rotations), parts.get(*rotations), rtol=1e-9, atol=1e-9)
         assert angles.get("totalEnergy") == pytest.approx(held.get("totalEnergy"), abs=1e-11)
 
 
@@ -249,7 +249,7 @@ def newton_euler(q, w, a, masses, gravity, tool):
     Torques at the joints, and position and velocity of the tool, by Craig's recursive Newton-Euler algorithm, outwards and then inwards.
     """
     axis, omega, alpha, pull = np.array([0, 0, 1.0]), np.zeros(3), np.zeros(3), np.array([0, 0, gravity])
-    turns, arms, loads = [], [], []
+    rotations, arms, loads = [], [], []
     place, speed, frame = np.zeros(3), np.zeros(3), np.eye(3)
     for (twist, length, offset, centre, moments), mass, qi, wi, ai in zip(LINKS, masses, q, w, a):
         turn = Rotation.from_euler("XZ", [twist, qi]).as_matrix()
@@ -262,15 +262,15 @@ def newton_euler(q, w, a, masses, gravity, tool):
         at_centre = pull + np.cross(alpha, centre) + np.cross(omega, np.cross(omega, centre))
         moments = np.array(moments)
         loads.append((mass * at_centre, moments * alpha + np.cross(omega, moments * omega) + np.cross(centre, mass * at_centre)))
-        turns.append(turn), arms.append(arm)
+        rotations.append(turn), arms.append(arm)
     end = np.array([0, 0, tool])
     reach = [*(place + frame @ end), *(speed + frame @ np.cross(omega, end))]
     torques, force, moment = [], np.zeros(3), np.zeros(3)
     for i in reversed(range(6)):
         force, moment = force + loads[i][0], moment + loads[i][1]
         torques.append(moment[2])
-        force = turns[i] @ force
-        moment = turns[i] @ moment + np.cross(arms[i], force)
+        force = rotations[i] @ force
+        moment = rotations[i] @ moment + np.cross(arms[i], force)
     return np.array(torques[::-1]), reach
 
 
@@ -389,8 +389,8 @@ def bricard(alpha):
 def bricard_energies(alpha, m=1.0, width=0.1, g=9.81):
     """M(alpha) with T = M alpha'^2/2, and U; the rods are lines with rotational inertia across."""
     step = 1e-30
-    (ends, turns), (moved, turned) = bricard(alpha + 0j), bricard(alpha + 1j * step)
-    rates, spins = moved.imag / step, turned.imag / step
+    (ends, rotations), (moved, rotated) = bricard(alpha + 0j), bricard(alpha + 1j * step)
+    rates, spins = moved.imag / step, rotated.imag / step
     ends = ends.real
     M = sum(m / 3 * (u @ u + u @ v + v @ v) for u, v in zip(rates, rates[1:]))
     for i, spin in enumerate(spins):

@@ -104,8 +104,8 @@ def test_contacts_that_exist_in_mujoco_alone(ground, replaced, new, lines, tmp_p
     (tmp_path / "system.xml").write_text(f'<system name="S"><include file="world.xml" as="r" {ground}/></system>')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
-    told = re.findall(r"^world\.xml:(\d+): warning: (.*)", result.stderr, re.MULTILINE)
-    assert len(told) == len(lines) and all(any(line == int(number) and text.startswith(words) for number, text in told) for line, words in lines), result.stderr
+    reported = re.findall(r"^world\.xml:(\d+): warning: (.*)", result.stderr, re.MULTILINE)
+    assert len(reported) == len(lines) and all(any(line == int(number) and text.startswith(words) for number, text in reported) for line, words in lines), result.stderr
 
 
 @pytest.mark.parametrize(

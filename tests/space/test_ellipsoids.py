@@ -85,8 +85,8 @@ def rolling(_, state):
     cross = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
     spin_rate = np.linalg.solve(MOMENTS - cross @ cross, np.cross(r, without) - np.cross(w, MOMENTS @ w))
     x, y, z, s = state[3:7]
-    turn_rate = 0.5 * np.array([[s, -z, y], [z, s, -x], [-y, x, s], [-x, -y, -z]]) @ w
-    return np.r_[turn.apply(v), turn_rate, spin_rate]
+    rotation_rate = 0.5 * np.array([[s, -z, y], [z, s, -x], [-y, x, s], [-x, -y, -z]]) @ w
+    return np.r_[turn.apply(v), rotation_rate, spin_rate]
 
 
 @pytest.mark.parametrize("spin", [5.0, -5.0])
@@ -186,8 +186,8 @@ def flying(_, state):
     """The same without the table; state: height of the centre, its rate, the quaternion, and w."""
     x, y, z, s = state[2:6]
     w = state[6:]
-    turn_rate = 0.5 * np.array([[s, -z, y], [z, s, -x], [-y, x, s], [-x, -y, -z]]) @ w
-    return np.r_[state[1], -G, turn_rate, np.linalg.solve(MOMENTS, np.cross(MOMENTS @ w, w))]
+    rotation_rate = 0.5 * np.array([[s, -z, y], [z, s, -x], [-y, x, s], [-x, -y, -z]]) @ w
+    return np.r_[state[1], -G, rotation_rate, np.linalg.solve(MOMENTS, np.cross(MOMENTS @ w, w))]
 
 
 def gap(_, state):

@@ -149,10 +149,10 @@ def arm_with(tau, vs):
 
     def power(velocity, spin, at):
         place = lambda name: lambda t, q, u: arm_poses(t, q, u)[name][1]
-        turned = lambda name: lambda t, q, u: arm_poses(t, q, u)[name][0]
+        rotated = lambda name: lambda t, q, u: arm_poses(t, q, u)[name][0]
         R = np.real(arm_poses(*at[:2], at[3])["arm"][0])
         total = (R @ [3, -1, 2]) @ velocity(place("tip")) + 0.7 * vs * velocity(place("wheel"))[2]
-        return total + np.array([0.2, 0, tau]) @ spin(turned("wheel")) + np.array([0, tau, -0.4]) @ (R @ spin(turned("arm")))
+        return total + np.array([0.2, 0, tau]) @ spin(rotated("wheel")) + np.array([0, tau, -0.4]) @ (R @ spin(rotated("arm")))
 
     return Mechanism(arm_bodies, (1, 0, -9.81), power)
 
@@ -355,14 +355,14 @@ def test_message(text, message, tmp_path):
     assert "circle" not in message or result.stderr.count("system.xml:") == 1, result.stderr
 
 
-@pytest.mark.parametrize("moments, told", [('Ixx="1" Iyy="1" Izz="2.3"', True), ('Ixx="1" Iyy="1" Izz="2"', False), ('Izz="1"', False),
+@pytest.mark.parametrize("moments, reported", [('Ixx="1" Iyy="1" Izz="2.3"', True), ('Ixx="1" Iyy="1" Izz="2"', False), ('Izz="1"', False),
                                            ('Ixx="1" Iyy="1" Izz="1" Ixy="0.7"', True), ("", False)])  # fmt: skip
-def test_moments_of_no_body_give_a_warning(moments, told, tmp_path):
+def test_moments_of_no_body_give_a_warning(moments, reported, tmp_path):
     """A principal moment is at most the sum of the other two; 1 + 0.7 exceeds 1 - 0.7 + 1."""
     (tmp_path / "system.xml").write_text(f'''{HEAD}<frame name="f"><rotate axis="z" angle="q"/></frame>
       <particle mass="1" x="p*sin(q)" y="p*cos(q)"/><body name="b" in="f" mass="0" {moments}/></system>''')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
-    assert result.returncode == 0 and ("no body can have the moments of inertia of 'b'" in result.stderr) == told, result.stderr
+    assert result.returncode == 0 and ("no body can have the moments of inertia of 'b'" in result.stderr) == reported, result.stderr
 
 
 def test_gimbal_lock_of_euler_angles_is_an_error(open_fmu):

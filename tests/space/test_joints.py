@@ -24,8 +24,8 @@ TYPES = {
     "screw": "x y z aboutX aboutY",
 }  # fmt: skip
 MASS, GRAVITY, INERTIA = 2.0, np.array([0.3, -0.5, -9.81]), np.array([0.2, 0.3, 0.12])
-WALL, WALL_TURNED = np.array([0.1, -0.2, 0.4]), Rotation.from_euler("YX", [1.2, 0.4])
-GRIP, GRIP_TURNED = np.array([0.2, 0.1, 0.6]), Rotation.from_euler("XY", [-0.7, 0.3])
+WALL, WALL_ROTATED = np.array([0.1, -0.2, 0.4]), Rotation.from_euler("YX", [1.2, 0.4])
+GRIP, GRIP_ROTATED = np.array([0.2, 0.1, 0.6]), Rotation.from_euler("XY", [-0.7, 0.3])
 
 SYSTEM = """<system name="Hangs_{type}">
 {coordinates}
@@ -53,11 +53,11 @@ FLIPPED = [(kind, number) for kind, flips in FLIPS.items() for number in range(l
 
 def start_of(kind, flip=(0, 0, 0)):
     """A state that satisfies the joint, with a velocity that it allows: rotated and moved along the free directions."""
-    turns = {"spherical": (0.3, 0.5, -0.4), "universal": (0.4, 0.6, 0), "revolute": (0, 0, 0.8), "cylindrical": (0, 0, 0.8), "planar": (0, 0, 0.8)}
+    rotations = {"spherical": (0.3, 0.5, -0.4), "universal": (0.4, 0.6, 0), "revolute": (0, 0, 0.8), "cylindrical": (0, 0, 0.8), "planar": (0, 0, 0.8)}
     moves = {"cylindrical": (0, 0, 0.3), "prismatic": (0, 0, 0.3), "planar": (0.2, -0.1, 0)}
-    relative = Rotation.from_euler("XYZ", flip) * Rotation.from_euler("XYZ", turns.get(kind, (0, 0, 0)))
-    body = WALL_TURNED * relative * GRIP_TURNED.inv()
-    place = WALL + WALL_TURNED.apply(moves.get(kind, (0, 0, 0))) - body.apply(GRIP)
+    relative = Rotation.from_euler("XYZ", flip) * Rotation.from_euler("XYZ", rotations.get(kind, (0, 0, 0)))
+    body = WALL_ROTATED * relative * GRIP_ROTATED.inv()
+    place = WALL + WALL_ROTATED.apply(moves.get(kind, (0, 0, 0))) - body.apply(GRIP)
     d = body.as_quat()
     return dict(zip("xyzabcd", map(float, [*place, d[3], *d[:3]])))
 
@@ -95,16 +95,16 @@ def test_joint_obeys_newton_and_euler(joints, name):
     for row in result:
         body = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]])
         place, grip = np.array([row[q] for q in "xyz"]), body.apply(GRIP)
-        between, relative = WALL_TURNED.inv().apply(place + grip - WALL), (WALL_TURNED.inv() * body * GRIP_TURNED).as_matrix()
+        between, relative = WALL_ROTATED.inv().apply(place + grip - WALL), (WALL_ROTATED.inv() * body * GRIP_ROTATED).as_matrix()
         misfit = dict(zip("xyz", between)) | {"aboutX": relative[1, 2], "aboutY": relative[0, 2], "aboutZ": relative[1, 0] if kind != "universal" else relative[0, 1]}
         assert max(abs(misfit[name]) for name in held if (kind, name) != ("screw", "z")) < 1e-9
         force, torque = np.zeros(3), np.zeros(3)
         for name, of in zip(held, forces):
-            along = -row[of] * WALL_TURNED.as_matrix()[:, "XYZ".index(name[-1].upper())]
+            along = -row[of] * WALL_ROTATED.as_matrix()[:, "XYZ".index(name[-1].upper())]
             if kind == "universal" and name == "aboutZ":
                 # The torque acts about the common normal of the x axis of the wall and the y axis of the grip.
-                across = np.cross(WALL_TURNED.as_matrix()[:, 0], (body * GRIP_TURNED).as_matrix()[:, 1])
-                along = -row[of] * across / (across @ WALL_TURNED.as_matrix()[:, 2])
+                across = np.cross(WALL_ROTATED.as_matrix()[:, 0], (body * GRIP_ROTATED).as_matrix()[:, 1])
+                along = -row[of] * across / (across @ WALL_ROTATED.as_matrix()[:, 2])
             if kind == "screw" and name == "z":
                 torque -= 0.5 / (2 * np.pi) * along
             if "about" in name:
@@ -258,9 +258,9 @@ def test_screw(joints):
     assert np.ptp(result["totalEnergy"]) < 1e-8
 
 
-PLANE_TURNED, RADIUS, SPIN = Rotation.from_euler("YX", [0.1, -0.15]), 0.3, np.array([0.05, 0.05, 0.09])
+PLANE_ROTATED, RADIUS, SPIN = Rotation.from_euler("YX", [0.1, -0.15]), 0.3, np.array([0.05, 0.05, 0.09])
 LEAN = Rotation.from_euler("YX", [0.1, -0.15]) * Rotation.from_euler("X", 1.3)
-ROLLING_START = dict(zip("abcd", map(float, LEAN.as_quat()[[3, 0, 1, 2]]))) | dict(zip("xyz", map(float, PLANE_TURNED.apply([0.5, 0.2, 0.3]) + [0.1, -0.2, 0.4])))
+ROLLING_START = dict(zip("abcd", map(float, LEAN.as_quat()[[3, 0, 1, 2]]))) | dict(zip("xyz", map(float, PLANE_ROTATED.apply([0.5, 0.2, 0.3]) + [0.1, -0.2, 0.4])))
 ROLLING_VELOCITY = {"vb": -0.3, "vd": 2.5, "vc": 0.4}
 ROLLING_COORDINATES = "\n".join(
     f'<coordinate name="{q}" velocity="v{q}" unit="{"m" if q in "xyz" else "1"}" start="{ROLLING_START[q]!r}" velocityStart="{ROLLING_VELOCITY.get("v" + q, 0)}"/>' for q in "xyzabcd"
@@ -283,7 +283,7 @@ def test_rolling_obeys_newton_and_euler(joints, shape):
     names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"wheel.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
     result = simulate(f"Rolls_{shape}", [*names, *forces, "totalEnergy"])
     assert np.ptp(result["totalEnergy"]) < 1e-7
-    up, way = PLANE_TURNED.apply([0, 0, 1]), 0.0
+    up, way = PLANE_ROTATED.apply([0, 0, 1]), 0.0
     for row in result:
         body, place = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]]), np.array([row[q] for q in "xyz"])
         axle = body.apply([0, 0, 1])
@@ -294,7 +294,7 @@ def test_rolling_obeys_newton_and_euler(joints, shape):
         omega, alpha = (np.array([row[f"wheel.{of}{q}"] for q in "XYZ"]) for of in ("omega", "alpha"))
         velocity = np.array([row[f"v{q}"] for q in "xyz"])
         assert velocity + np.cross(body.apply(omega), lever) == pytest.approx(np.zeros(3), abs=1e-8)
-        force = -PLANE_TURNED.apply([row[of] for of in forces])
+        force = -PLANE_ROTATED.apply([row[of] for of in forces])
         assert 2 * (np.array([row[f"der(v{q})"] for q in "xyz"]) - GRAVITY) == pytest.approx(force, abs=1e-7)
         assert body.apply(SPIN * alpha + np.cross(omega, SPIN * omega)) == pytest.approx(np.cross(lever, force), abs=1e-7)
         way = max(way, np.linalg.norm(velocity))
@@ -340,11 +340,11 @@ def test_vectors(joints):
     """Expressions of vectors agree with NumPy's products of rotations."""
     for row in simulate("Vectors", ["p", "q", "vp", "vq", "a", "b", "c", "d"]):
         about_z = Rotation.from_euler("Z", row["p"])
-        turned = about_z * Rotation.from_euler("Y", row["q"])
+        rotated = about_z * Rotation.from_euler("Y", row["q"])
         arm, omega = about_z.apply([0.5, 0, 0]), [0, 0, row["vp"]] + row["vq"] * about_z.apply([0, 1, 0])
-        offsets = {"tip": turned.apply([0.4, -0.2, 0.1]), "rod": turned.apply([0.3, 0, 0])}
+        offsets = {"tip": rotated.apply([0.4, -0.2, 0.1]), "rod": rotated.apply([0.3, 0, 0])}
         velocity = {name: np.cross([0, 0, row["vp"]], arm) + np.cross(omega, offset) for name, offset in offsets.items()}
-        tip, (x, y, z) = arm + offsets["tip"], turned.as_matrix().T
+        tip, (x, y, z) = arm + offsets["tip"], rotated.as_matrix().T
         assert row["a"] == pytest.approx(tip @ (np.array([2 * row["p"], row["q"], 0]) - arm), abs=1e-12)
         assert row["b"] == pytest.approx(np.linalg.norm(np.cross(offsets["tip"], velocity["tip"] - velocity["rod"])), abs=1e-12)
         assert row["c"] == pytest.approx(np.cross(y, -tip) @ (velocity["rod"] + velocity["tip"]), abs=1e-12)
@@ -371,12 +371,12 @@ def test_bushing(joints):
         body = Rotation.from_quat([row["b"], row["c"], row["d"], row["a"]])
         place, velocity, acceleration = (np.array([row[name.format(q)] for q in "xyz"]) for name in ("{}", "v{}", "der(v{})"))
         omega, alpha = (np.array([row[f"rod.{of}{q}"] for q in "XYZ"]) for of in ("omega", "alpha"))
-        back = WALL_TURNED.inv()
+        back = WALL_ROTATED.inv()
         force = -np.array([30, 40, 50]) * back.apply(place - WALL) - np.array([1, 2, 3]) * back.apply(velocity)
         turn = (back * body).as_rotvec()
         torque = -4 * np.sinc(np.linalg.norm(turn) / np.pi) * turn - np.array([0.1, 0.2, 0.3]) * back.apply(body.apply(omega))
-        assert 2 * acceleration == pytest.approx(WALL_TURNED.apply(force), abs=1e-8)
-        assert body.apply(INERTIA * alpha + np.cross(omega, INERTIA * omega)) == pytest.approx(WALL_TURNED.apply(torque), abs=1e-7)
+        assert 2 * acceleration == pytest.approx(WALL_ROTATED.apply(force), abs=1e-8)
+        assert body.apply(INERTIA * alpha + np.cross(omega, INERTIA * omega)) == pytest.approx(WALL_ROTATED.apply(torque), abs=1e-7)
 
 
 BAD = [

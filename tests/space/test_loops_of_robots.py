@@ -30,7 +30,7 @@ def joint(name, kind, parent, child, place=(0, 0, 0), axis="0 0 1", yaw=0.0):
     )
 
 
-def turns(name, parent, child, axes):
+def rotations(name, parent, child, axes):
     """Revolute joints about one axis after the other, with massless links in between."""
     links = [parent, *(f"{name}_{i}" for i in range(1, len(axes))), child]
     between = "".join(map(link, links[1:-1]))
@@ -73,11 +73,11 @@ def delta():
     for arm, sign in RODS:
         rod = f"rod{arm}{'ab'[sign > 0]}"
         text += [fixed(f"{rod}_elbow", f"arm{arm}", (ARM, HALF * sign, 0)), link(rod, 0.05, f"0 0 {-ROD / 2}", ROD_INERTIA)]
-        text += [turns(rod, f"{rod}_elbow", rod, "yx"), fixed(f"{rod}_end", rod, (0, 0, -ROD))]
+        text += [rotations(rod, f"{rod}_elbow", rod, "yx"), fixed(f"{rod}_end", rod, (0, 0, -ROD))]
         yaw = 2 * np.pi / 3 * arm
         text.append(fixed(f"{rod}_ankle", "plate", (ANKLE * np.cos(yaw) - HALF * sign * np.sin(yaw), ANKLE * np.sin(yaw) + HALF * sign * np.cos(yaw), 0)))
     x, y = ANKLE, -HALF  # end of the first rod in the plate
-    return f'<robot name="delta">{"".join(text)}{turns("wrist", "rod0a_end", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", (-x, -y, 0))}</robot>'
+    return f'<robot name="delta">{"".join(text)}{rotations("wrist", "rod0a_end", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", (-x, -y, 0))}</robot>'
 
 
 # Stewart's platform: six legs, each a cylinder with a piston, from the floor to a platform, which in the file is attached to the first leg.
@@ -90,9 +90,9 @@ def stewart():
     text = [link("floor"), link("plate", 5, "0.02 0.01 0.03", INERTIA.format(0.1, 0.12, 0.2))]
     for leg in LEGS:
         text += [fixed(f"foot{leg}", "floor", FLOOR[leg]), link(f"cylinder{leg}", 0.8, "0 0 0.1", INERTIA.format(4e-3, 4e-3, 3e-4))]
-        text += [turns(f"foot{leg}", f"foot{leg}", f"cylinder{leg}", "xy"), link(f"piston{leg}", 0.4, "0 0 -0.1", INERTIA.format(2e-3, 2e-3, 1e-4))]
+        text += [rotations(f"foot{leg}", f"foot{leg}", f"cylinder{leg}", "xy"), link(f"piston{leg}", 0.4, "0 0 -0.1", INERTIA.format(2e-3, 2e-3, 1e-4))]
         text += [joint(f"piston{leg}", "prismatic", f"cylinder{leg}", f"piston{leg}"), fixed(f"head{leg}", "plate", CEILING[leg])]
-    return f'<robot name="stewart">{"".join(text)}{turns("neck", "piston0", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", -CEILING[0])}</robot>'
+    return f'<robot name="stewart">{"".join(text)}{rotations("neck", "piston0", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", -CEILING[0])}</robot>'
 
 
 # Two legs of a running robot: a stiff leaf spring in the shin and one at the heel, which a rod connects with the thigh, and a crank that
@@ -279,13 +279,13 @@ def test_accelerations_and_forces(name, open_fmu):
         assert np.max(np.abs(found - expected)) < 1e-8 * max(1, np.max(np.abs(expected)))
         reference.misfit(q)
         if name == "Legs":
-            told = [[instance.get(f"rod{i}.force")] for i in range(len(forces))]
-            assert np.max(np.abs(told - forces)) < 1e-8 * max(1, np.max(np.abs(forces)))
+            reported = [[instance.get(f"rod{i}.force")] for i in range(len(forces))]
+            assert np.max(np.abs(reported - forces)) < 1e-8 * max(1, np.max(np.abs(forces)))
             continue
         for i, (one, _, _) in enumerate(LOOPS[name]):
             axes = reference.place(one).rotation
-            told = axes @ [instance.get(f"loop{i}.force{axis}") for axis in "XYZ"]
-            assert np.max(np.abs(told - forces[i])) < 1e-8 * max(1, np.max(np.abs(forces)))
+            reported = axes @ [instance.get(f"loop{i}.force{axis}") for axis in "XYZ"]
+            assert np.max(np.abs(reported - forces[i])) < 1e-8 * max(1, np.max(np.abs(forces)))
 
 
 def run(instance, reference, name, end):
@@ -304,8 +304,8 @@ def test_gripper_keeps_its_fingers_parallel(open_fmu):
     instance = open_fmu("Gripper")
     assert abs(run(instance, Reference("Gripper"), "Gripper", 0.125)) < 1e-9  # from 0.136 s on the parallelograms lie flat, where they could fold
     for side in ("left", "right"):
-        turned = instance.get(f"r.{side}_crank") + instance.get(f"r.{side}_knuckle")
-        assert abs(np.sin(turned)) < 1e-9
+        rotated = instance.get(f"r.{side}_crank") + instance.get(f"r.{side}_knuckle")
+        assert abs(np.sin(rotated)) < 1e-9
     idle = [f"loop{i}.{force}" for i in range(2) for force in ("forceY", "torqueX", "torqueZ")]
     assert [instance.get(force) for force in idle] == [0.0] * 6
 
@@ -331,9 +331,9 @@ def test_stewart_by_inverse_kinematics(open_fmu):
     reference, instance = Reference("Stewart"), open_fmu("Stewart")
     assert abs(run(instance, reference, "Stewart", 0.3)) < 1e-7
     plate = np.array([instance.get(f"r.plate.{axis}") for axis in "xyz"])
-    turned = np.array([[instance.get(f"r.plate.R{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)])
+    rotated = np.array([[instance.get(f"r.plate.R{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)])
     for leg in LEGS:
-        assert instance.get(f"r.piston{leg}") == pytest.approx(np.linalg.norm(plate + turned @ CEILING[leg] - FLOOR[leg]), abs=1e-9)
+        assert instance.get(f"r.piston{leg}") == pytest.approx(np.linalg.norm(plate + rotated @ CEILING[leg] - FLOOR[leg]), abs=1e-9)
 
 
 WELD = """<mujoco><option gravity="0 0 0"/><worldbody><body name="a"><freejoint/><geom type="box" size="0.1 0.2 0.3"/></body></worldbody>

@@ -97,7 +97,7 @@ def test_a_tetrahedron_comes_to_rest():
 
 class Mesh(ctypes.Structure):
     _fields_ = [("points", ctypes.c_void_p), ("point_count", ctypes.c_size_t), ("triangles", ctypes.c_void_p), ("triangle_count", ctypes.c_size_t),
-                ("corners", ctypes.c_size_t * 32), ("corner_count", ctypes.c_size_t), ("lack", ctypes.c_double)]  # fmt: skip
+                ("corners", ctypes.c_size_t * 32), ("corner_count", ctypes.c_size_t), ("residual", ctypes.c_double)]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +117,7 @@ def corners_of(library, points):
     mesh = Mesh(points=points.ctypes.data, point_count=len(points))
     found = library.mesh_find_corners(ctypes.byref(mesh)) & 0xFF
     assert bool(found) == (mesh.corner_count > 0)
-    return list(mesh.corners[: mesh.corner_count]), mesh.lack
+    return list(mesh.corners[: mesh.corner_count]), mesh.residual
 
 
 def grid_on_cube(count):
@@ -133,10 +133,10 @@ def test_hulls(library):
     for i in range(300):
         points = chance.normal(size=(chance.integers(4, 25), 3)) * chance.uniform(0.1, 1, 3)
         points = (points + chance.normal(size=3)) * 10.0 ** chance.integers(-4, 5)
-        corners, lack = corners_of(library, np.vstack([points, points[::-1]]))
+        corners, residual = corners_of(library, np.vstack([points, points[::-1]]))
         planes, tolerance = ConvexHull(points[corners]).equations, 1e-5 * np.ptp(points, axis=0).max()
         missing = set(ConvexHull(points).vertices) - set(corners)
-        assert set(corners) <= set(ConvexHull(points).vertices) and lack <= tolerance, i
+        assert set(corners) <= set(ConvexHull(points).vertices) and residual <= tolerance, i
         assert all((planes[:, :3] @ points[k] + planes[:, 3]).max() < 1.1 * tolerance for k in missing), i
         left_out += len(missing)
     assert left_out < 3
@@ -161,11 +161,11 @@ def test_hulls_of_many_points(library):
     """The hull has at most 32 vertices; the residual is the distance of points beyond it."""
     points = np.random.default_rng(4).normal(size=(3000, 3))
     points /= np.linalg.norm(points, axis=1)[:, None]
-    corners, lack = corners_of(library, points)
+    corners, residual = corners_of(library, points)
     planes = ConvexHull(points[corners]).equations
     assert len(corners) == 32
-    assert lack == pytest.approx((points @ planes[:, :3].T + planes[:, 3]).max(), rel=1e-4)
-    assert lack < 0.2
+    assert residual == pytest.approx((points @ planes[:, :3].T + planes[:, 3]).max(), rel=1e-4)
+    assert residual < 0.2
 
 
 def written(tmp_path, name, content, more=""):

@@ -126,14 +126,14 @@ def rotation(instance, name):
     return np.array([[instance.get(f"{name}.R{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)])
 
 
-@pytest.mark.parametrize("turned", [0.0, 0.7])
-def test_thrown_ball(turned):
+@pytest.mark.parametrize("rotated", [0.0, 0.7])
+def test_thrown_ball(rotated):
     """
     The path is a parabola until the ball rolls, with 5/7 of its velocity and 2/7 of that of rolling with its spin (CueBall of the
     reference).
     """
     r, mu, speed, spin = 0.1, 0.3, np.array([1.0, 0.4]), np.array([3.0, -8.0])
-    with Running("OnPlane", {"avx": speed[0], "avy": speed[1], "turned": turned} | pose("a", Rotation.identity(), [*spin, 5.0])) as instance:
+    with Running("OnPlane", {"avx": speed[0], "avy": speed[1], "turned": rotated} | pose("a", Rotation.identity(), [*spin, 5.0])) as instance:
         rolling = r * np.array([spin[1], -spin[0]])
         slip = speed - rolling
         end = 2 * np.linalg.norm(slip) / (7 * mu * G)
@@ -243,11 +243,11 @@ def test_box_that_tips_over():
         energy = instance.get("totalEnergy")
         instance.run(1.0, 0.01)
         arm, diagonal = math.hypot(width, height) / 2, math.atan2(width, height)
-        turned = 2 * math.asin(instance.get("aq2"))
+        rotated = 2 * math.asin(instance.get("aq2"))
         inertia = 2 * (width**2 + height**2) / 3
-        fall = 2 * G * arm * (math.cos(diagonal - slope) - math.cos(turned - diagonal + slope))
+        fall = 2 * G * arm * (math.cos(diagonal - slope) - math.cos(rotated - diagonal + slope))
         speed = 2 * instance.get("ar2") / instance.get("aq0")
-        assert 0.01 < turned and speed == pytest.approx(math.sqrt(2 * fall / inertia), rel=1e-6)
+        assert 0.01 < rotated and speed == pytest.approx(math.sqrt(2 * fall / inertia), rel=1e-6)
         assert instance.get("totalEnergy") == pytest.approx(energy, rel=1e-9)
         assert whole(instance, *[f"touch[{i}].closed" for i in (1, 2, 3, 4)]) == [0, 1, 0, 1]
 

@@ -373,11 +373,11 @@ class Reference:
                 acceleration += [*self.data.qacc[v : v + 3]]
                 q, v = q + 3, v + 3
             if kind in (0, 1):
-                turned, omega, alpha = self.data.qpos[q : q + 4], self.data.qvel[v : v + 3], self.data.qacc[v : v + 3]
-                rate = turning(turned, omega)
-                position += [*turned]
+                rotated, omega, alpha = self.data.qpos[q : q + 4], self.data.qvel[v : v + 3], self.data.qacc[v : v + 3]
+                rate = turning(rotated, omega)
+                position += [*rotated]
                 velocity += [*rate]
-                acceleration += [*(turning(rate, omega) + turning(turned, alpha))]
+                acceleration += [*(turning(rate, omega) + turning(rotated, alpha))]
             else:
                 position.append(self.data.qpos[q])
                 velocity.append(self.data.qvel[v])
@@ -519,15 +519,15 @@ def test_tendons_that_follow_others(open_fmu):
         instance = open_fmu("Linked").initialize(dict(zip(names, [*(0.4 * data.qpos), *data.qvel])))
         position, velocity = np.split(np.array(instance.get(*names)), 2)
         drift = (links.evaluate(position + 1e-5 * velocity)[1] - links.evaluate(position - 1e-5 * velocity)[1]) @ velocity / 2e-5
-        lack, jacobian = links.evaluate(position)
-        assert lack == pytest.approx(0, abs=1e-13) and jacobian @ velocity == pytest.approx(0, abs=1e-12)
+        residual, jacobian = links.evaluate(position)
+        assert residual == pytest.approx(0, abs=1e-13) and jacobian @ velocity == pytest.approx(0, abs=1e-12)
         data.qvel = velocity
         mujoco.mj_forward(model, data)
         mass = np.zeros((model.nv, model.nv))
         for row, unit in zip(mass, np.eye(model.nv)):
             mujoco.mj_mulM(model, data, row, unit)
         forces = data.qfrc_passive - data.qfrc_bias
-        matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((len(lack), len(lack)))]])
+        matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((len(residual), len(residual)))]])
         expected = np.linalg.solve(matrix, [*forces, *-drift])[: model.nv]
         found = instance.get(*(f"der({name})" for name in names[model.nv :]))
         assert np.max(np.abs(found - expected)) < 1e-8 * max(1, np.max(np.abs(expected)))
@@ -560,10 +560,10 @@ class Loops:
         lacks, rows = [], []
         for ends, fixed in self.ends:
             places, axes, moving, turning = [], [], [], []
-            for body, point, turned in ends:
+            for body, point, rotated in ends:
                 frame = self.data.xmat[body].reshape(3, 3)
                 places.append(self.data.xpos[body] + frame @ point)
-                axes.append(Rotation.from_matrix(frame) * turned)
+                axes.append(Rotation.from_matrix(frame) * rotated)
                 jacobians = np.zeros((3, self.model.nv)), np.zeros((3, self.model.nv))
                 mujoco.mj_jac(self.model, self.data, *jacobians, places[-1], body)
                 moving.append(jacobians[0])
@@ -582,8 +582,8 @@ class Loops:
 
     def closed(self, position):
         for _ in range(100):
-            lack, jacobian = self.evaluate(position)
-            position = self.moved(position, -np.linalg.pinv(jacobian, rcond=1e-9) @ lack, 0.5 if np.max(np.abs(lack)) > 0.5 else 1.0)
+            residual, jacobian = self.evaluate(position)
+            position = self.moved(position, -np.linalg.pinv(jacobian, rcond=1e-9) @ residual, 0.5 if np.max(np.abs(residual)) > 0.5 else 1.0)
         assert np.max(np.abs(self.evaluate(position)[0])) < 1e-12
         return position
 

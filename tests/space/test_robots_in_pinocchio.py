@@ -81,11 +81,11 @@ class Reference:
         q, v = np.zeros(self.model.nq), np.zeros(self.shares.shape[1])
         v[-n:] = velocity[-n:]
         if self.floats:
-            turned = base[3:]
-            axes = pin.Quaternion(*turned).toRotationMatrix()
-            conjugate = turned * [1, -1, -1, -1]
+            rotated = base[3:]
+            axes = pin.Quaternion(*rotated).toRotationMatrix()
+            conjugate = rotated * [1, -1, -1, -1]
             v[:3], v[3:6] = axes.T @ base_rate[:3], 2 * product(conjugate, base_rate[3:])[1:]
-            q[:7] = [*base[:3], *turned[1:], turned[0]]
+            q[:7] = [*base[:3], *rotated[1:], rotated[0]]
         positions = self.shares[:, -n:] @ position[-n:]
         for joint, offset in zip(self.placed, self.offsets):
             angle = positions[joint.idx_v] + offset
@@ -99,7 +99,7 @@ class Reference:
         if not self.floats:
             return a
         linear = axes @ (a[:3] + np.cross(v[3:6], v[:3]))
-        turning = (product(turned, vector(a[3:6])) + product(base_rate[3:], vector(v[3:6]))) / 2
+        turning = (product(rotated, vector(a[3:6])) + product(base_rate[3:], vector(v[3:6]))) / 2
         return np.array([*linear, *turning, *a[-n:]])
 
 
@@ -128,10 +128,10 @@ class Evaluation:
 def random_state(random, floats, n):
     position, velocity = random.uniform(-2, 2, n), random.uniform(-2, 2, n)
     if floats:
-        turned = random.normal(size=4)
-        turned /= np.linalg.norm(turned)
-        turning = product(turned, vector(random.uniform(-2, 2, 3))) / 2
-        position = [*random.uniform(-2, 2, 3), *turned, *position]
+        rotated = random.normal(size=4)
+        rotated /= np.linalg.norm(rotated)
+        turning = product(rotated, vector(random.uniform(-2, 2, 3))) / 2
+        position = [*random.uniform(-2, 2, 3), *rotated, *position]
         velocity = [*random.uniform(-2, 2, 3), *turning, *velocity]
     return np.array(position), np.array(velocity), random.uniform(-20, 20, n)
 

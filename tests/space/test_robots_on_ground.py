@@ -29,9 +29,9 @@ DOG = f"""<robot name="dog"><link name="trunk"><inertial><mass value="8"/>{INERT
 <collision><geometry><box size="0.5 0.18 0.1"/></geometry></collision></link>{"".join(leg(name, *place) for name, place in LEGS.items())}</robot>"""
 WISHES = {"hip": 0.5, "knee": -1.0}
 MOTORS = "".join(
-    f'<input name="{leg}_{joint}_torque" value="200*({wish} - dog.{leg}_{joint}) - 5*dog.{leg}_{joint}_velocity"/>' for leg in LEGS for joint, wish in WISHES.items()
+    f'<input name="{leg}_{joint}_torque" value="200*({request} - dog.{leg}_{joint}) - 5*dog.{leg}_{joint}_velocity"/>' for leg in LEGS for joint, request in WISHES.items()
 )
-STARTS = "".join(f'<coordinate name="{leg}_{joint}" start="{wish}"/>' for leg in LEGS for joint, wish in WISHES.items())
+STARTS = "".join(f'<coordinate name="{leg}_{joint}" start="{request}"/>' for leg in LEGS for joint, request in WISHES.items())
 STANDING = f"""<system name="Standing"><include file="dog.urdf" as="dog" base="floating" ground="true">{MOTORS}{STARTS}
 <coordinate name="base_z" start="0.385"/></include><experiment stopTime="5" stepSize="0.01"/></system>"""
 ROUND = """<robot name="roller"><link name="roller"><inertial><mass value="3"/>{0}</inertial>
@@ -196,8 +196,8 @@ def test_a_mesh_that_is_missing(tmp_path):
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0 and "a <collision> of the link 'roller' touches nothing: the mesh 'roller.stl' is not there; expected a path" in result.stderr
     (tmp_path / "system.xml").write_text(ROLLER.replace(' ground="true"', ""))
-    told = lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
-    assert "left out, since the motion does not depend on them: collision" in told and "1 mesh is not drawn; the first: the mesh 'roller.stl'" in told
+    reported = lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
+    assert "left out, since the motion does not depend on them: collision" in reported and "1 mesh is not drawn; the first: the mesh 'roller.stl'" in reported
 
 
 def test_a_shape_without_size(tmp_path):

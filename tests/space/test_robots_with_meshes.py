@@ -70,8 +70,8 @@ def test_visuals_are_drawn(tmp_path):
     parts = COLLISION.format('<sphere radius="0.3"/>')
     parts += SEEN.format(ORIGIN, '<mesh filename="cube.obj"/>', '<material name="sand"/>') + SEEN.format("", '<mesh filename="file://cube.obj"/>', "")
     parts += SEEN.format("", '<box size="0.1 0.2 0.3"/>', '<material name=""><color rgba="0 0 2 0.5"/></material>')
-    things, told = scene_of(tmp_path, parts, ground=True)
-    assert [thing.tag for thing in things] == ["mesh", "shape", "shape", "shape"] and told == ""
+    things, reported = scene_of(tmp_path, parts, ground=True)
+    assert [thing.tag for thing in things] == ["mesh", "shape", "shape", "shape"] and reported == ""
     assert [thing.get("color") for thing in things[1:]] == ["#ff8000ff", None, "#0000ff80"]
     assert things[1].get("mesh") == things[2].get("mesh") == things[0].get("id")
     assert [float(things[1].get(name)) for name in ("x", "z", "roll", "pitch", "yaw")] == pytest.approx([0.1, 0.05, 0.2, 0.1, 0.3])
@@ -84,8 +84,8 @@ def test_packages(tmp_path, folder):
     home = tmp_path / "a" / "b"
     (home / folder).mkdir(parents=True)
     (home / folder / "cube.stl").write_text(CUBE_STL)
-    things, told = scene_of(home, COLLISION.format(MESH))
-    assert [thing.tag for thing in things] == ["mesh", "shape"] and told == ""
+    things, reported = scene_of(home, COLLISION.format(MESH))
+    assert [thing.tag for thing in things] == ["mesh", "shape"] and reported == ""
 
 
 @pytest.mark.parametrize(
@@ -108,25 +108,25 @@ def test_visuals_that_are_wrong(tmp_path, mesh, problem):
     for name, text in {"arm.dae": "<COLLADA/>", "short.stl": "", "cube.obj": CUBE_OBJ}.items():
         (tmp_path / name).write_text(text)
     good = SEEN.format("", '<sphere radius="0.2"/>', "")
-    things, told = scene_of(tmp_path, COLLISION.format('<sphere radius="0.3"/>') + SEEN.format("", mesh, "") + good)
-    assert [thing.get("radius") for thing in things] == ["0.3"] and "depend on them: visual (included" in told
-    assert problem is None or f"1 mesh is not drawn; the first: {problem}" in told
-    things, told = scene_of(tmp_path, SEEN.format("", mesh, "") + good)
+    things, reported = scene_of(tmp_path, COLLISION.format('<sphere radius="0.3"/>') + SEEN.format("", mesh, "") + good)
+    assert [thing.get("radius") for thing in things] == ["0.3"] and "depend on them: visual (included" in reported
+    assert problem is None or f"1 mesh is not drawn; the first: {problem}" in reported
+    things, reported = scene_of(tmp_path, SEEN.format("", mesh, "") + good)
     assert [thing.get("radius") for thing in things] == ["0.2"]
 
 
 def test_meshes_without_contact(tmp_path):
     """A flat mesh is drawn without contact; a round one has contact at some of its vertices, with a message."""
     (tmp_path / "cube.obj").write_text(obj_text(CUBE * [1, 1, 0], SQUARES))
-    things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'))
-    assert len(things) == 2 and told == ""
-    things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'), ground=True)
-    assert things == [] and "a <collision> of the link 'roller' touches nothing: the mesh 'cube.obj' is flat; expected a volume" in told
+    things, reported = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'))
+    assert len(things) == 2 and reported == ""
+    things, reported = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'), ground=True)
+    assert things == [] and "a <collision> of the link 'roller' touches nothing: the mesh 'cube.obj' is flat; expected a volume" in reported
     ball = np.random.default_rng(1).normal(size=(200, 3))
     ball /= np.linalg.norm(ball, axis=1)[:, None]
     (tmp_path / "cube.obj").write_text(obj_text(ball, triangles_of(ball)))
-    things, told = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'), ground=True)
-    assert len(things) == 2 and re.search(r"touches at 32 of them; it reaches up to 0\.\d+ m beyond these", told)
+    things, reported = scene_of(tmp_path, COLLISION.format('<mesh filename="cube.obj"/>'), ground=True)
+    assert len(things) == 2 and re.search(r"touches at 32 of them; it reaches up to 0\.\d+ m beyond these", reported)
 
 
 MJCF = """<mujoco model="roller"><compiler meshdir="parts"/>
@@ -145,8 +145,8 @@ def mjcf_scene_of(tmp_path, parts, ground=False):
 def test_geoms_that_are_meshes(tmp_path):
     """Geoms without contact are drawn in place of those with contact; colours are those of geoms and materials."""
     seen = '<geom type="mesh" mesh="cube" contype="0" conaffinity="0" material="sand" pos="0.1 0 0"/><geom contype="0" conaffinity="0" size="0.1" rgba="0 0 1 0.5"/>'
-    things, told = mjcf_scene_of(tmp_path, f'{seen}<geom type="mesh" mesh="cube"/>', ground=True)
-    assert [(thing.tag, thing.get("color")) for thing in things] == [("mesh", None), ("shape", "#ff8000ff"), ("shape", "#0000ff80")] and told == ""
+    things, reported = mjcf_scene_of(tmp_path, f'{seen}<geom type="mesh" mesh="cube"/>', ground=True)
+    assert [(thing.tag, thing.get("color")) for thing in things] == [("mesh", None), ("shape", "#ff8000ff"), ("shape", "#0000ff80")] and reported == ""
     assert float(things[1].get("x")) == 0.1
     variables = (tmp_path / "out" / "modelDescription.xml").read_text()
     assert "r.roller_ground1.force" in variables and "r.roller_ground2.force" not in variables
@@ -154,10 +154,10 @@ def test_geoms_that_are_meshes(tmp_path):
 
 def test_meshes_of_mjcf_that_are_lost(tmp_path):
     """Missing meshes give a message, and an error only if the motion depends on them."""
-    lost = '<geom type="mesh" mesh="lost"/>'
-    assert "1 mesh is not drawn; the first: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, lost)[1]
-    assert "a <geom> of type mesh of the body 'roller' touches nothing: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, lost, ground=True)[1]
-    (tmp_path / "robot.xml").write_text(MJCF.replace("<inertial", "<site").replace("mass=", "name=").replace(' diaginertia="1 1 1"', "").format(lost))
+    loss = '<geom type="mesh" mesh="lost"/>'
+    assert "1 mesh is not drawn; the first: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, loss)[1]
+    assert "a <geom> of type mesh of the body 'roller' touches nothing: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, loss, ground=True)[1]
+    (tmp_path / "robot.xml").write_text(MJCF.replace("<inertial", "<site").replace("mass=", "name=").replace(' diaginertia="1 1 1"', "").format(loss))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 1 and "robot.xml:3: the inertia of a <geom> of type mesh is not known: the mesh 'parts/lost.stl' is not there" in result.stderr
 

@@ -123,12 +123,12 @@ def nearest(kind, place):
 RADIUS = {"Sphere": 0.3, "Capsule": 0.2, "Box": 0.0, "Cylinder": 0.0}
 
 
-def distance(kinds, places, turns):
+def distance(kinds, places, rotations):
     """Distance by alternating projections onto the two convex solids, which converge to the nearest points."""
     point = np.array(places[0], dtype=float)
     for _ in range(2000):
-        other = places[1] + turns[1].apply(nearest(kinds[1], turns[1].inv().apply(point - places[1])))
-        point = places[0] + turns[0].apply(nearest(kinds[0], turns[0].inv().apply(other - places[0])))
+        other = places[1] + rotations[1].apply(nearest(kinds[1], rotations[1].inv().apply(point - places[1])))
+        point = places[0] + rotations[0].apply(nearest(kinds[0], rotations[0].inv().apply(other - places[0])))
     return np.linalg.norm(point - other) - RADIUS[kinds[0]] - RADIUS[kinds[1]]
 
 
@@ -137,12 +137,12 @@ def test_depths(kinds):
     """Without damping the force is stiffness times depth."""
     chance, deep = random.Random(1), 0
     for _ in range(60):
-        turns = [Rotation.from_quat([chance.gauss(0, 1) for _ in range(4)]) for _ in range(2)]
+        rotations = [Rotation.from_quat([chance.gauss(0, 1) for _ in range(4)]) for _ in range(2)]
         places = [np.zeros(3), np.array([chance.uniform(-0.8, 0.8) for _ in range(3)])]
-        gap = distance(kinds, places, turns)
+        gap = distance(kinds, places, rotations)
         if gap < -0.9 * sum(RADIUS[kind] for kind in kinds):
             continue  # one centre may be inside the other solid
-        with Running("".join(kinds), pose("a", places[0], turns[0]) | pose("b", places[1], turns[1])) as instance:
+        with Running("".join(kinds), pose("a", places[0], rotations[0]) | pose("b", places[1], rotations[1])) as instance:
             assert instance.get("touch.force") == pytest.approx(1e5 * max(0.0, -gap), rel=1e-6, abs=1e-3)
         deep += gap < 0
     assert 5 < deep < 60

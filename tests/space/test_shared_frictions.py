@@ -156,14 +156,14 @@ def table_on(count, friction):
     """A table on a ring of feet, pushed and tilted, with its centre of mass at ground level."""
     parameters = "".join(f'<parameter name="{name}" start="0"/>' for name in ("Fx", "Fy", "Fz", "Tz", "Tx", "Ty"))
     coordinates = "".join(f'<coordinate name="{name}" velocity="v{name}"/>' for name in ("x", "y", "z", "yaw", "pitch", "roll"))
-    turns = "".join(f'<rotate axis="{axis}" angle="{angle}"/>' for axis, angle in {"z": "yaw", "y": "pitch", "x": "roll"}.items())
+    rotations = "".join(f'<rotate axis="{axis}" angle="{angle}"/>' for axis, angle in {"z": "yaw", "y": "pitch", "x": "roll"}.items())
     legs = "".join(
         f'<shape name="foot{k}" in="a" type="sphere" radius="0.05" x="{float(x)}" y="{float(y)}" z="0.05"/>'
         f'<contact name="c{k}" between="floor" and="foot{k}"{friction}/>'
         for k, (x, y) in enumerate(feet(count))
     )
     return f"""<system name="Table{count}"><parameter name="mu" start="0.5"/>{parameters}<gravity z="-{G}"/><shape name="floor" type="plane"/>{coordinates}
-<frame name="a"><translate x="x" y="y" z="z"/>{turns}</frame><body name="b" in="a" mass="{M}" Ixx="0.3" Iyy="0.4" Izz="0.5"/><force on="b" x="Fx*time" y="Fy*time" z="Fz"/><torque on="b" x="Tx" y="Ty" z="Tz*time"/>{legs}<experiment stopTime="1"/></system>"""
+<frame name="a"><translate x="x" y="y" z="z"/>{rotations}</frame><body name="b" in="a" mass="{M}" Ixx="0.3" Iyy="0.4" Izz="0.5"/><force on="b" x="Fx*time" y="Fy*time" z="Fz"/><torque on="b" x="Tx" y="Ty" z="Tz*time"/>{legs}<experiment stopTime="1"/></system>"""
 
 
 def pressing_forces(count, weight, tilting):

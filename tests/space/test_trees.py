@@ -46,13 +46,13 @@ def pendulum():
 
 ROBOT, NUMBERS = robot_of_many_joints()
 # A hinge in the middle of the chain has a prescribed acceleration.
-DRIVEN = pendulum().replace('name="q5" velocity="w5" unit="rad"', 'name="q5" velocity="w5" unit="rad" acceleration="push"')
-DRIVEN = DRIVEN.replace("FoldingPendulum", "DrivenPendulum").replace("<coordinate", '<constant name="push" value="2" unit="rad/s2"/><coordinate', 1)
+PRESCRIBED = pendulum().replace('name="q5" velocity="w5" unit="rad"', 'name="q5" velocity="w5" unit="rad" acceleration="push"')
+PRESCRIBED = PRESCRIBED.replace("FoldingPendulum", "DrivenPendulum").replace("<coordinate", '<constant name="push" value="2" unit="rad/s2"/><coordinate', 1)
 
 
 @pytest.fixture(scope="module", autouse=True)
 def systems():
-    build_systems("trees", {"DeepRobot": ROBOT, "FoldingPendulum": pendulum(), "DrivenPendulum": DRIVEN})
+    build_systems("trees", {"DeepRobot": ROBOT, "FoldingPendulum": pendulum(), "DrivenPendulum": PRESCRIBED})
 
 
 @pytest.mark.parametrize("name", ["DeepRobot", "FoldingPendulum", "DrivenPendulum"])
@@ -140,10 +140,10 @@ def check_direction(instance):
     random, states = np.random.default_rng(3), [name for name in fmu.states_of(instance.description.modelName) if name != "nonConservativeWork"]
     place, direction = random.uniform(-1, 1, (2, len(states)))
     accelerations = [f"der({name})" for name in states if name[0] in "vw"]
-    ahead, behind, further_ahead, further_behind = [
+    ahead, after, further_ahead, further_after = [
         np.array(instance.put(dict(zip(states, place + 1e-3 * steps * direction))).get(*accelerations)) for steps in (1, -1, 2, -2)
     ]
-    expected = (8 * (ahead - behind) - (further_ahead - further_behind)) / 12e-3
+    expected = (8 * (ahead - after) - (further_ahead - further_after)) / 12e-3
     instance.put(dict(zip(states, place)))
     ours = instance.fmu.getDirectionalDerivative(instance.vr(*accelerations), instance.vr(*states), list(direction))
     np.testing.assert_allclose(ours, expected, rtol=1e-7, atol=1e-7 * np.max(np.abs(expected)))

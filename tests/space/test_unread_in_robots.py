@@ -80,8 +80,8 @@ def test_warnings_of_urdf(replaced, new, attributes, line, message, tmp_path):
     text = ROTOR.replace(replaced, new) if replaced else ROTOR
     if "<limit" in new:
         text = text.replace('<limit lower="-9" upper="9" effort="0" velocity="0"/>', "")
-    told = warnings_of("rotor.urdf", text, attributes, tmp_path)
-    assert [(number, words) for number, words in told if words.startswith(message)] == [(str(line), words) for _, words in told if words.startswith(message)] != []
+    reported = warnings_of("rotor.urdf", text, attributes, tmp_path)
+    assert [(number, words) for number, words in reported if words.startswith(message)] == [(str(line), words) for _, words in reported if words.startswith(message)] != []
 
 
 @pytest.mark.parametrize("text", ["<mu1>0.3</mu1>", "<selfCollide>true</selfCollide>", "<springStiffness>0</springStiffness>", "<turnGravityOff>false</turnGravityOff>", "<material>Grey</material>"])

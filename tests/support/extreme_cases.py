@@ -42,7 +42,7 @@ class Case:
     evaluations: int = 0
     tolerance: float = 1e-10
     start_time: float = 0.0
-    refused: str = None  # pattern of the message, if failing is correct
+    rejected: str = None  # pattern of the message, if failing is correct
     exchange: float = None  # bound on the error with FMPy's CVode in model exchange; 0 if that fails too
     actions: Callable = None  # steps the instance and returns its rows
     pieces: list = None  # consecutive (duration, values of inputs and parameters)
@@ -68,7 +68,7 @@ class Run:
 
 @dataclass
 class Outcome:
-    verdict: str  # right, refused or wrong
+    verdict: str  # right, rejected or wrong
     error: float = np.nan
     evaluations: int = 0
     message: str = ""
@@ -99,8 +99,8 @@ def judge(case, run, evaluations, bound):
 
 def judge_rejection(case, messages):
     text = " / ".join(messages)
-    fits = case.refused is not None and re.search(case.refused, text)
-    return Outcome("refused" if fits else "wrong", message=text)
+    fits = case.rejected is not None and re.search(case.rejected, text)
+    return Outcome("rejected" if fits else "wrong", message=text)
 
 
 def co_simulate(case):
@@ -121,8 +121,8 @@ def co_simulate(case):
         return judge_rejection(case, [text for status, _, text in instance.messages if status > 1])
     finally:
         instance.free()
-    if case.refused is not None:
-        return Outcome("wrong", evaluations=evaluations, message="not refused")
+    if case.rejected is not None:
+        return Outcome("wrong", evaluations=evaluations, message="not rejected")
     table = np.array(rows).T
     outcome = judge(case, Run(case, table[0], dict(zip(names, table[1:]))), evaluations, case.bound)
     outcome.steps = steps
@@ -144,7 +144,7 @@ def exchange_model(case):
     except FMICallException:
         return judge_rejection(case, messages)
     if not case.exchange:
-        return Outcome("wrong", message="not refused")
+        return Outcome("wrong", message="not rejected")
     return judge(case, Run(case, result["time"], {name: result[name] for name in names}), 0, case.exchange)
 
 
@@ -384,8 +384,8 @@ CASES = [
          "energy: a random walk of rounding, 2^-52 sqrt(steps), is 1", random_walk, 3.0, 25_000_000, 1e-15),
     Case("tolerance 1e-16", "SimplePendulum", UNIT | dict(theta=2.0), 20, 1, ELLIPTIC, pendulum_error, 1e-13, 100, 1e-16),
     Case("tolerance 0.5", "SimplePendulum", UNIT | dict(theta=2.0), 20, 1, ELLIPTIC, pendulum_error, 0.5, 200, 0.5),
-    *(Case(f"tolerance {value}", "SimplePendulum", UNIT, 1, 1, "refused", tolerance=value,
-           refused="tolerance is .*expected one between 0 and 1") for value in (0.0, -1.0, 1.0, np.nan, np.inf)),
+    *(Case(f"tolerance {value}", "SimplePendulum", UNIT, 1, 1, "rejected", tolerance=value,
+           rejected="tolerance is .*expected one between 0 and 1") for value in (0.0, -1.0, 1.0, np.nan, np.inf)),
     # --- Stiff damping and discontinuous forces.
     Case("damping 1e8 N m s", "DampedPendulum", dict(b=1e8, theta=1.0), 1.0, 0.1,
          "creep with the rate of the weight over the damping", viscous_error, 1e-9, 400, exchange=1e-6),
@@ -426,8 +426,8 @@ CASES = [
     Case("Kepler e = 0.999999, 100 revolutions", "ParticlePolar", kepler_values(0.999999), revolutions(0.999999, 100.25), revolutions(0.999999, 12.53125),
          "Kepler's equation; the pericentre multiplies rounding by 1e6 a revolution", kepler_error, 1e-3, 40000, 1e-15),
     Case("fall into the centre", "ParticlePolar", dict(m=1.0, mu=1.0, r=1.0, vr=0.0, theta=0.0, omega=0.0), 2.0, 0.1,
-         "r = 0 at pi / sqrt(8) = 1.1107 s", refused="stopped at time 1.1107207345.*singularity"),
-    Case("start at the centre", "ParticlePolar", dict(r=0.0), 1.0, 0.1, "no motion from there", refused="mass matrix is singular.*'theta'", exchange=0.0),
+         "r = 0 at pi / sqrt(8) = 1.1107 s", rejected="stopped at time 1.1107207345.*singularity"),
+    Case("start at the centre", "ParticlePolar", dict(r=0.0), 1.0, 0.1, "no motion from there", rejected="mass matrix is singular.*'theta'", exchange=0.0),
     # --- Spherical coordinates near their pole.
     *(Case(f"throw past the pole at {d:g} m", "ParticleSpherical", pole(d), 1.0, 0.05,
            "parabola; the azimuth turns by pi within d / speed", throw_error, bound, work, 1e-13)
@@ -435,7 +435,7 @@ CASES = [
     Case("throw through the pole", "ParticleSpherical", pole(0.0) | dict(theta=0.0, omegaTheta=0.0, omegaPhi=-pole(0.0)["omegaPhi"], vr=-pole(0.0)["vr"]) , 1.0, 0.05,
          "parabola: without azimuthal rate phi goes on below 0", throw_error, 1e-9, 1000, 1e-13),
     Case("start at the pole", "ParticleSpherical", dict(phi=0.0, omegaTheta=1.0), 1.0, 0.1,
-         "the azimuth does not exist", refused="mass matrix is singular.*'theta'", exchange=0.0),
+         "the azimuth does not exist", rejected="mass matrix is singular.*'theta'", exchange=0.0),
     # --- Stiff springs.
     *(Case(f"spring of {k:g} N/m, critical damping", "ElasticPendulum", dict(m=1.0, l0=1.0, k=k, c=2 * np.sqrt(k), r=1.0 + 9.81 * np.cos(0.5) / k, theta=0.5), 5.0, 0.01,
            "rigid pendulum, up to m g / k", rigid_error, max(100 / k, 1e-7), 2000, 1e-8, exchange=max(100 / k, 1e-4)) for k in (1e4, 1e6, 1e8, 1e10)),

@@ -83,8 +83,8 @@ class Robot:
             if name not in poses:
                 joint = carried[name]
                 position, rotation = pose(joint.find("parent").get("link"))
-                for shift, turned in (place(joint), self.motion(joint, q)):
-                    position, rotation = position + rotation * shift, rotation * turned
+                for shift, rotated in (place(joint), self.motion(joint, q)):
+                    position, rotation = position + rotation * shift, rotation * rotated
                 poses[name] = position, rotation
             return poses[name]
 
@@ -96,10 +96,10 @@ class Robot:
             inertial = self.links[name].find("inertial")
             if inertial is None:
                 continue
-            shift, turned = place(inertial)
+            shift, rotated = place(inertial)
             get = lambda key: mp.mpf(inertial.find("inertia").get(key))
             tensor = mp.matrix([[get("i" + "".join(sorted(a + b))) for b in "xyz"] for a in "xyz"])
-            yield mp.mpf(inertial.find("mass").get("value")), tensor, position + rotation * shift, rotation * turned
+            yield mp.mpf(inertial.find("mass").get("value")), tensor, position + rotation * shift, rotation * rotated
 
     def potential_energy(self, q):
         return sum(mass * mp.mpf("9.81") * position[2] for mass, _, position, _ in self.masses(q))

@@ -59,8 +59,8 @@ class Mechanism:
     def energies(self, at):
         kinetic, potential = REAL(0), np.real(self.potential(*self._moved(at, 0)))
         now, later = self.places(*self._moved(at, 0)), self.places(*self._moved(at, 1j * TINY))
-        for (mass, R, position, tensor), (_, turned, moved, _) in zip(now, later):
-            W = np.real(R).T @ (np.imag(turned) / TINY)
+        for (mass, R, position, tensor), (_, rotated, moved, _) in zip(now, later):
+            W = np.real(R).T @ (np.imag(rotated) / TINY)
             w, v = np.array([W[2, 1], W[0, 2], W[1, 0]]), np.imag(moved) / TINY
             kinetic += REAL(mass) * (v @ v) / 2 + w @ np.array(tensor, REAL) @ w / 2
             potential -= REAL(mass) * (np.array(self.gravity, REAL) @ np.real(position))

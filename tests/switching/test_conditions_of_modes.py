@@ -70,7 +70,7 @@ def test_a_tuned_parameter_brings_the_passage(open_fmu):
     assert instance.get("at[0]") == 1
 
 
-def turns(mode, time):
+def rotations(mode, time):
     start, *times = TIMES[mode]
     return bool((start + sum(time > t for t in times)) % 2)
 
@@ -84,7 +84,7 @@ def test_how_often_conditions_become_true(flags):
 
     def look(time):
         nonlocal before
-        values = {"a": turns("a", time), "b": turns("b", time), "flag": flag, "x": time}
+        values = {"a": rotations("a", time), "b": rotations("b", time), "flag": flag, "x": time}
         present = {name: bool(eval(when, values)) for name, when in CONDITIONS.items()}
         for name in CONDITIONS:
             counts[name] += present[name] and before is not None and not before[name]

@@ -158,10 +158,10 @@ def built():
     build_systems("friction-in-a-plane", texts)
 
 
-@pytest.mark.parametrize("turned", [0, 0.7])
+@pytest.mark.parametrize("rotated", [0, 0.7])
 @pytest.mark.parametrize("method", METHODS)
-def test_a_puck_stops_on_a_line(open_fmu, method, turned):
-    instance = open_fmu(f"Puck_{method}").initialize({"vx": 1.2, "vy": -1.6, "turned": turned}, tolerance=1e-9)
+def test_a_puck_stops_on_a_line(open_fmu, method, rotated):
+    instance = open_fmu(f"Puck_{method}").initialize({"vx": 1.2, "vy": -1.6, "turned": rotated}, tolerance=1e-9)
     deceleration = 0.3 * G
     to(instance, 0.4)
     way = 2 * 0.4 - deceleration * 0.08
@@ -178,16 +178,16 @@ def test_a_puck_stops_on_a_line(open_fmu, method, turned):
     assert instance.get("x", "y") == pytest.approx([0.6 * 2 / deceleration, -0.8 * 2 / deceleration], abs=1e-8)
 
 
-@pytest.mark.parametrize("turned", [0, 0.4])
+@pytest.mark.parametrize("rotated", [0, 0.4])
 @pytest.mark.parametrize("method", METHODS)
-def test_a_force_below_the_stiction_sticks_and_one_above_moves(open_fmu, method, turned):
+def test_a_force_below_the_stiction_sticks_and_one_above_moves(open_fmu, method, rotated):
     """Each component of the force is far below the stiction; the magnitude decides."""
     stiction = 0.3 * 2 * G
-    instance = open_fmu(f"Puck_{method}").initialize({"turned": turned}, tolerance=1e-9)
+    instance = open_fmu(f"Puck_{method}").initialize({"turned": rotated}, tolerance=1e-9)
     instance.set({"Fx": 0.9999 * 0.6 * stiction, "Fy": 0.9999 * 0.8 * stiction})
     to(instance, 2)
     assert instance.get("x", "y", "vx", "vy") == pytest.approx([0, 0, 0, 0], abs=1e-14)
-    c, s = np.cos(turned), np.sin(turned)
+    c, s = np.cos(rotated), np.sin(rotated)
     push = 0.9999 * stiction * np.array([[c, s], [-s, c]]) @ [0.6, 0.8]
     assert instance.get("sole.force", "sole.across.force") == pytest.approx(push, rel=1e-12)
     instance.set({"Fx": 1.0001 * 0.6 * stiction, "Fy": 1.0001 * 0.8 * stiction})
@@ -268,9 +268,9 @@ def test_a_puck_across_a_slope_of_the_angle_of_friction(open_fmu, method):
     assert instance.get("vx", "vy") == pytest.approx([1, 0], abs=1e-6)
 
 
-@pytest.mark.parametrize("turned", [0, 1.1])
+@pytest.mark.parametrize("rotated", [0, 1.1])
 @pytest.mark.parametrize("tilt, vx, vy", [(0.2, 0, 1), (0.2, -1, 0.5), (0.29, 0.3, 1)])
-def test_a_puck_comes_to_rest_on_a_slope(open_fmu, tilt, vx, vy, turned):
+def test_a_puck_comes_to_rest_on_a_slope(open_fmu, tilt, vx, vy, rotated):
     """It stops at the time and position of the equation of motion, and stays."""
     down, friction = G * np.sin(tilt), 0.3 * G * np.cos(tilt)
 
@@ -282,7 +282,7 @@ def test_a_puck_comes_to_rest_on_a_slope(open_fmu, tilt, vx, vy, turned):
     stopped.terminal = True
     result = solve_ivp(slope, [0, 50], [0, 0, vx, vy], "DOP853", rtol=1e-12, atol=1e-14, events=stopped)
     end, place = result.t[-1], result.y[:2, -1]
-    instance = open_fmu("Puck_auto").initialize({"tilt": tilt, "vx": vx, "vy": vy, "turned": turned}, tolerance=1e-10)
+    instance = open_fmu("Puck_auto").initialize({"tilt": tilt, "vx": vx, "vy": vy, "turned": rotated}, tolerance=1e-10)
     to(instance, end * (1 - 1e-3))
     assert value(instance, "sole.sliding") == 1
     to(instance, end + 1e-5)
@@ -292,13 +292,13 @@ def test_a_puck_comes_to_rest_on_a_slope(open_fmu, tilt, vx, vy, turned):
     assert np.hypot(*instance.get("sole.force", "sole.across.force")) == pytest.approx(2 * down, rel=1e-12)
 
 
-@pytest.mark.parametrize("turned", [0, 0.5])
+@pytest.mark.parametrize("rotated", [0, 0.5])
 @pytest.mark.parametrize("method", METHODS)
-def test_a_puck_goes_up_a_steep_slope_and_comes_down(open_fmu, method, turned):
+def test_a_puck_goes_up_a_steep_slope_and_comes_down(open_fmu, method, rotated):
     """Straight up the slope it stops for an instant, and cannot stick."""
     tilt = 0.6
     down, friction = G * np.sin(tilt), 0.3 * G * np.cos(tilt)
-    instance = open_fmu(f"Puck_{method}").initialize({"tilt": tilt, "vx": -3, "turned": turned}, tolerance=1e-9)
+    instance = open_fmu(f"Puck_{method}").initialize({"tilt": tilt, "vx": -3, "turned": rotated}, tolerance=1e-9)
     top = 3 / (down + friction)
     to(instance, top + 0.5)
     place = -9 / (2 * (down + friction)) + (down - friction) / 8
@@ -469,7 +469,7 @@ def test_other_outcomes_of_an_impact_are_reported(open_fmu):
     """The frictions move along lines only, so that trying all modes finds all outcomes of the impact."""
     instance = open_fmu("RandomCones")
     random = np.random.default_rng(0)
-    seen = told = 0
+    seen = reported = 0
     for _ in range(300):
         mass = np.diag(10 ** random.uniform(-1, 1, SIZE))
         normal, along = random.normal(size=(2, CONTACTS, SIZE)) * [1, 1, 1, 1, 0, 0]
@@ -482,21 +482,21 @@ def test_other_outcomes_of_an_impact_are_reported(open_fmu):
         after = np.array(instance.get(*(f"v{i}" for i in range(SIZE))))
         is_other = [not np.allclose(motion, after, atol=1e-6 * np.linalg.norm(before)) for _, motion in impacts_by_trial(case)]
         assert not all(is_other)
-        is_told = any("has more than one solution" in text for _, _, text in instance.messages)
-        assert any(is_other) or not is_told
+        is_reported = any("has more than one solution" in text for _, _, text in instance.messages)
+        assert any(is_other) or not is_reported
         seen += any(is_other)
-        told += is_told
-    assert seen > 20 and told > 0.5 * seen, (seen, told)  # the runtime searches from a few starts only
+        reported += is_reported
+    assert seen > 20 and reported > 0.5 * seen, (seen, reported)  # the runtime searches from a few starts only
 
 
-@pytest.mark.parametrize("turned", [0, 0.8])
+@pytest.mark.parametrize("rotated", [0, 0.8])
 @pytest.mark.parametrize(
     "values",
     [{"vx": -1}, {"vx": 1}, {"vx": 1, "mu": 2}, {"vx": 1, "w": 1, "mu": 2}, {"vx": -2, "y": 1.5}, {"vx": -2, "y": 1.5, "mu": 2}, {"vx": 2, "y": 1.5, "mu": 2}],
 )
-def test_a_rod_in_a_plane_moves_as_one_on_a_line(open_fmu, values, turned):
+def test_a_rod_in_a_plane_moves_as_one_on_a_line(open_fmu, values, rotated):
     """Impacts and forces in the plane equal those on a line, which are a linear problem, solved by Lemke's method."""
-    line, plane = open_fmu("RodOnLine").initialize(values, tolerance=1e-10), open_fmu("RodInPlane").initialize({**values, "turned": turned}, tolerance=1e-10)
+    line, plane = open_fmu("RodOnLine").initialize(values, tolerance=1e-10), open_fmu("RodInPlane").initialize({**values, "turned": rotated}, tolerance=1e-10)
     for time in (0.05, 0.2, 0.35):
         to(line, time)
         to(plane, time)
@@ -505,11 +505,11 @@ def test_a_rod_in_a_plane_moves_as_one_on_a_line(open_fmu, values, turned):
         assert plane.get("z", "vz") == pytest.approx([0, 0], abs=1e-9)
 
 
-@pytest.mark.parametrize("turned", [0, 0.8])
-def test_painleves_paradox_is_reported(open_fmu, turned):
+@pytest.mark.parametrize("rotated", [0, 0.8])
+def test_painleves_paradox_is_reported(open_fmu, rotated):
     instance = open_fmu("RodInPlane")
     with instance.fails(ERROR, "contact 'ground' has no solution, as the friction 'tip"):
-        instance.initialize({"vx": -1, "mu": 2, "turned": turned}, tolerance=1e-9)
+        instance.initialize({"vx": -1, "mu": 2, "turned": rotated}, tolerance=1e-9)
 
 
 def test_an_importer_with_long_steps_does_not_pass_over_rest():
@@ -537,7 +537,7 @@ def test_its_state_is_restored_while_it_slides_and_while_it_sticks(open_fmu):
         instance.free_state(state)
 
 
-REFUSED = {
+REJECTED = {
     '<friction name="f" coordinate="x" across="vy" force="1"/>': "across and without velocity",
     '<friction name="f" velocity="vx" across="x*w" force="1"/>': "across has the unit",
     '<friction name="f" velocity="vx" across="2*W" force="1"/>': "the velocity across of a <friction> depends on no velocity",
@@ -547,7 +547,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("line", REFUSED)
+@pytest.mark.parametrize("line", REJECTED)
 def test_errors(line, tmp_path):
     text = f"""<system name="Refused" description="Friction in a plane">
   <parameter name="W" start="1" unit="m/s"/><parameter name="w" start="1" unit="rad"/><parameter name="N" start="1" unit="N"/><parameter name="l" start="1" unit="m"/>
@@ -557,10 +557,10 @@ def test_errors(line, tmp_path):
 </system>"""
     (tmp_path / "system.xml").write_text(text)
     result = fmu.lagc(tmp_path / "system.xml", "-o", tmp_path / "out")
-    if REFUSED[line] is None:
+    if REJECTED[line] is None:
         assert result.returncode == 0, result.stderr
     else:
-        assert result.returncode != 0 and REFUSED[line] in result.stderr
+        assert result.returncode != 0 and REJECTED[line] in result.stderr
 
 
 def test_a_negative_force_is_an_error(open_fmu):

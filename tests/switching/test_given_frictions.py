@@ -66,7 +66,7 @@ PLANES = {
 }  # fmt: skip
 QUARTER = lambda t: (3 * t * np.sin(2 * t) - 1.5 * (1 - np.cos(2 * t)), 1.5 * np.sin(2 * t) - 3 * t * np.cos(2 * t))
 # Functions of time: the velocity and the acceleration.
-DRIVEN = {
+PRESCRIBED = {
     "Both": lambda t: ((3 * max(0, t - 1), 4 * max(0, t - 1)), (after(t, 1, 3), after(t, 1, 4))),
     "One": lambda t: ((-3 * max(0, t - 1), 0), (after(t, 1, -3), 0)),
     "Later": lambda t: ((3 * max(0, t - 1), 4 * max(0, t - 2)), (after(t, 1, 3), after(t, 2, 4))),
@@ -131,7 +131,7 @@ def test_a_driven_body_carries_the_friction_of_another(open_fmu):
 def test_forces_in_a_plane(open_fmu, body, method):
     instance = open_fmu(name_of(body, method)).initialize()
     for time, *forces in instance.run(3, 0.125, "rub.force", "rub.across.force", "drive", "across"):
-        velocity, acceleration = DRIVEN[body](time)
+        velocity, acceleration = PRESCRIBED[body](time)
         speed = np.hypot(*velocity)
         if 0 < time and min(abs(time - 1), abs(time - 2)) > 1e-3:
             friction = [5 * part / speed if speed > 0 else 0 for part in velocity]
@@ -145,4 +145,4 @@ def test_no_force_where_a_given_velocity_passes_through_0(open_fmu, body, method
     """Friction has no direction there, so that the drives supply only the force of the acceleration."""
     instance = open_fmu(name_of(body, method)).initialize()
     instance.run(1, 1 / steps)
-    assert instance.get("rub.force", "rub.across.force", "drive", "across") == pytest.approx([0, 0, *DRIVEN[body](1)[1]], abs=0.01)
+    assert instance.get("rub.force", "rub.across.force", "drive", "across") == pytest.approx([0, 0, *PRESCRIBED[body](1)[1]], abs=0.01)

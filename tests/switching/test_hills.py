@@ -62,5 +62,5 @@ def test_no_hill_is_passed_over(method):
                 assert result[f"v{i}"] == pytest.approx(2 * half, rel=1e-9, abs=1e-14 / w), (hill, w, steps)
             # The ball meets the slope of the hill at the height 0.1, and is reflected about its normal.
             slope = 2 * 0.1 * math.sqrt(math.log(5)) / w
-            turned = (1 - slope**2) / (1 + slope**2), 2 * slope / (1 + slope**2)
-            assert (result["va"], result["vb"]) == pytest.approx(turned, abs=1e-10), (w, steps)
+            rotated = (1 - slope**2) / (1 + slope**2), 2 * slope / (1 + slope**2)
+            assert (result["va"], result["vb"]) == pytest.approx(rotated, abs=1e-10), (w, steps)

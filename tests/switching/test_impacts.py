@@ -182,7 +182,7 @@ def test_random_impacts_obey_their_law(open_fmu, tied):
     """
     instance, other = open_fmu("RandomContacts"), open_fmu("RandomContactsTurned", logging=False)
     rng = np.random.default_rng(tied)
-    lessened = turned = several = 0
+    lessened = rotated = several = 0
     for _ in range(400):
         case = Contacts(rng)
         case.force[:] = 0.0  # without external forces, velocities stay as the impact leaves them
@@ -223,8 +223,8 @@ def test_random_impacts_obey_their_law(open_fmu, tied):
                 assert has_others == any("has more than one solution" in text for _, _, text in instance.messages)
         instance.messages.clear()
         swapped = case.start(other)
-        turned += np.allclose(v, swapped, atol=1e-8 * abs(v).max())
-    assert turned == 400
+        rotated += np.allclose(v, swapped, atol=1e-8 * abs(v).max())
+    assert rotated == 400
     assert (lessened > 10 and several > 10) or not tied
 
 
@@ -246,10 +246,10 @@ def impacts_by_trial(case):
             else:
                 a[k + i, k + i], a[k + i, i] = 1.0, mode * case.mu[i]
         z = np.linalg.solve(a, b)
-        behind = before + w @ z
-        fits = np.all(z[:k] >= -1e-10) and np.all(abs(z[k:]) <= case.mu[:k] * z[:k] + 1e-10) and np.all(behind[:k] >= target - 1e-10)
-        if fits and all(behind[k + i] * mode >= 0 for i, mode in enumerate(modes) if mode in (1, -1)):
-            found.append((z @ (before + behind), case.v + np.linalg.solve(case.mass, case.rows().T @ z)))
+        after = before + w @ z
+        fits = np.all(z[:k] >= -1e-10) and np.all(abs(z[k:]) <= case.mu[:k] * z[:k] + 1e-10) and np.all(after[:k] >= target - 1e-10)
+        if fits and all(after[k + i] * mode >= 0 for i, mode in enumerate(modes) if mode in (1, -1)):
+            found.append((z @ (before + after), case.v + np.linalg.solve(case.mass, case.rows().T @ z)))
     return found
 
 
@@ -345,11 +345,11 @@ def test_a_jamming_rod_is_reported(open_fmu, mu, theta, rise, tolerance):
     instance = open_fmu("PainleveRod").initialize({"mu": mu, "theta0": theta, "rise": rise, "vx": -30}, tolerance=tolerance)
     with instance.fails(DISCARD, "the friction 'rub' slides and presses the contact 'tip' together ever more .* a jam"):
         instance.step(0.1)
-    told = next(text for _, _, text in instance.messages if "jam" in text)
-    assert float(told.split()[1][:-1]) == pytest.approx(path.t[-1], rel=1e-4)
+    reported = next(text for _, _, text in instance.messages if "jam" in text)
+    assert float(reported.split()[1][:-1]) == pytest.approx(path.t[-1], rel=1e-4)
 
 
-def told_of_other_forces(instance):
+def reported_other_forces(instance):
     return sum("may have another solution" in text for _, _, text in instance.messages)
 
 
@@ -360,14 +360,14 @@ def test_contacts_that_are_too_many_to_try_all(open_fmu):
     """
     instance = open_fmu("Masses14").initialize({"mu": 1})
     assert instance.get("c0.force", "c13.force") == pytest.approx(2 * [9.81 / (1 - 14 * 0.025)], rel=1e-9)
-    assert told_of_other_forces(instance) == 0
+    assert reported_other_forces(instance) == 0
     instance = open_fmu("Masses12")
     with instance.fails(ERROR, "more than one solution"):
         instance.initialize({"mu": 3.1, "pull": 400})
     instance = open_fmu("Masses14").initialize({"mu": 3.1, "pull": 400})
     for _ in range(3):
         instance.step(0.01)
-    assert told_of_other_forces(instance) == 1 and instance.get("c0.force") == 0
+    assert reported_other_forces(instance) == 1 and instance.get("c0.force") == 0
     instance = open_fmu("Masses14")
     with instance.fails(ERROR, "the contact 'c0' has perhaps no solution"):
         instance.initialize({"mu": 3.1})

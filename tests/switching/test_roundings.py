@@ -92,4 +92,4 @@ def test_units(tmp_path):
     for unit, expression, problem in [("m", "floor(x)", "the argument of floor has the unit m"), ("m", "mod(x, s)", "m and s in one mod"),
                                       ("s", "mod(x, 2)", "has the unit m, expected s"), ("m", "mod(x, 2) + x", "")]:  # fmt: skip
         (tmp_path / "system.xml").write_text(text.format(unit, expression))
-        assert problem in (said := lagc("system.xml", "-o", "out", cwd=tmp_path).stderr) and (problem != "" or "mismatch" not in said)
+        assert problem in (messages := lagc("system.xml", "-o", "out", cwd=tmp_path).stderr) and (problem != "" or "mismatch" not in messages)

@@ -422,8 +422,8 @@ def test_events_that_never_happen(event, message, tmp_path):
     system = tmp_path / "system.xml"
     system.write_text('<system name="A"><parameter name="Ts" start="0.1" min="0"/><parameter name="flag" type="Boolean" start="false"/><coordinate name="x" velocity="v"/><mode name="n"/><mode name="o"/><particle mass="1" x="x"/>'
                       f'<event {event}><set mode="n">n + 1</set></event><event when="x - 1"><set mode="o">2</set></event></system>')  # fmt: skip
-    said = fmu.lagc(system, "-o", tmp_path).stderr
-    assert re.search(f"the event never happens: .*{message}", said) if message else "never happens" not in said, said
+    messages = fmu.lagc(system, "-o", tmp_path).stderr
+    assert re.search(f"the event never happens: .*{message}", messages) if message else "never happens" not in messages, messages
 
 
 def test_a_sign_is_an_expression_that_passes_0(open_fmu):

@@ -266,17 +266,17 @@ def test_a_walker_walks(open_fmu):
     instance = open_fmu("PassiveWalker").initialize(tolerance=1e-12)
     y, t, foot = np.array([-0.3234, 0.2187, -0.3772, -1.0918]), 0.0, 0.0
     for i in range(6):
-        length, behind = walker.step(y)
+        length, after = walker.step(y)
         to(instance, t + 0.4 * length)
         middle = solve_ivp(walker.rates, (0, 0.4 * length), y, "DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
         assert instance.get(*names) == pytest.approx(middle, abs=1e-8)
         to(instance, t + length + 1e-9)
         assert value(instance, "steps") == i + 1
-        assert instance.get(*names) == pytest.approx(behind, abs=1e-7)
-        foot += np.sin(behind[1]) - np.sin(behind[0])
+        assert instance.get(*names) == pytest.approx(after, abs=1e-7)
+        foot += np.sin(after[1]) - np.sin(after[0])
         assert value(instance, "foot") == pytest.approx(foot, abs=1e-7)
-        assert instance.get("hip.x", "hip.y") == pytest.approx([foot - np.sin(behind[1]), np.cos(behind[1]) - foot * np.tan(np.radians(3))], abs=1e-6)
-        y, t = behind, t + length
+        assert instance.get("hip.x", "hip.y") == pytest.approx([foot - np.sin(after[1]), np.cos(after[1]) - foot * np.tan(np.radians(3))], abs=1e-6)
+        y, t = after, t + length
     assert foot > 2
     to(instance, 10.0)
     assert value(instance, "steps") == 13

@@ -188,7 +188,7 @@ def test_an_input_that_touches_passes_nothing(open_fmu, opened, kind):
         assert list(instance.get(*COUNTERS)) == counts, u
 
 
-TOLD = ["pace", "der(cv)", "der(dv)", "brake.force", "floor.force", "over", "cv", "d"]
+REPORTED = ["pace", "der(cv)", "der(dv)", "brake.force", "floor.force", "over", "cv", "d"]
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -204,8 +204,8 @@ def test_set_values_show_at_once_and_reading_changes_nothing(open_fmu, opened, v
     for u, right in [(0.6, (0, 0, 2, 2, 0, 1, 0)), (0.8, (2, 2, 6, 4, 0, 1, 0)), (1.0, (5, 5, 10, 1, 0, 1, None)), (0.1, (-2, -2, -8, 4, 0, 1, None))]:
         instance.set(u=u)
         before = take()
-        told = list(instance.get(*TOLD))
-        assert told[:6] == pytest.approx(right[:6], abs=1e-12), u
+        reported = list(instance.get(*REPORTED))
+        assert reported[:6] == pytest.approx(right[:6], abs=1e-12), u
         again = take()
         assert serialize(before) == serialize(again)
         if version == 2:
@@ -213,12 +213,12 @@ def test_set_values_show_at_once_and_reading_changes_nothing(open_fmu, opened, v
             assert slope[0] == pytest.approx(20)
         time = instance.time
         instance.step(1e-9)
-        assert list(instance.get(*TOLD)) == pytest.approx(told, abs=1e-6)
-        behind = serialize(take())
+        assert list(instance.get(*REPORTED)) == pytest.approx(reported, abs=1e-6)
+        after = serialize(take())
         restore(before)
         instance.time = time
         instance.step(1e-9)
-        assert serialize(take()) == behind
+        assert serialize(take()) == after
         instance.step(0.02)
 
 

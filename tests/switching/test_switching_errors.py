@@ -19,7 +19,7 @@ BODY = """
 </system>
 """
 WEIGHT = "<potential>9.81*{}</potential>"
-REFUSED = {
+REJECTED = {
     "PushingFriction": ('<friction name="F" coordinate="x" force="f"/>', "the force of the friction 'F' is -0.3"),
     "WeakStiction": ('<friction name="F" coordinate="x" force="1" stiction="0.5"/><force coordinate="x">0.7</force>',
                      "the friction 'F' neither sticks nor slides; expected a stiction of at least the force while it slides, less friction"),
@@ -66,12 +66,12 @@ FINE = {
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {name: BODY.format(name=name, elements=elements) for name, (elements, _) in (REFUSED | FINE).items()}
-    build_systems("refused", texts)
+    texts = {name: BODY.format(name=name, elements=elements) for name, (elements, _) in (REJECTED | FINE).items()}
+    build_systems("rejected", texts)
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
-@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize("name", REJECTED)
 def test_errors(name, kind):
     if (name, kind) == ("ToAndFro", "ModelExchange"):
         pytest.skip("an importer has its own number of steps")
@@ -79,7 +79,7 @@ def test_errors(name, kind):
     logger = lambda *words: messages.append(words[-1].decode() if isinstance(words[-1], bytes) else words[-1])
     with pytest.raises(FMICallException):
         fmpy.simulate_fmu(str(fmu.archive(name)), stop_time=3, output_interval=0.5, fmi_type=kind, logger=logger)
-    assert any(re.search(REFUSED[name][1], message) for message in messages), messages
+    assert any(re.search(REJECTED[name][1], message) for message in messages), messages
 
 
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
