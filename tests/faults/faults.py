@@ -145,7 +145,7 @@ PLACES = [
     # The description
     ('dependency == TUNABLE_FACTOR && !initial ? "tunable"', 'dependency == TUNABLE_FACTOR ? "tunable"',
      pytest(by_hand, "kinds_of")),
-    ("case VARIABLE_PARAMETER:\n  case VARIABLE_MODE: return initial;", "case VARIABLE_PARAMETER:\n  case VARIABLE_MODE: return true;",
+    ("case VARIABLE_PARAMETER: return initial;", "case VARIABLE_PARAMETER: return true;",
      pytest(by_hand, "kinds_of")),
     ("unit == NULL || contains(written, count, unit)", "unit == NULL", pytest(by_hand, "each_unit_once")),
     ("isnan(model->experiment.stop_time) ? start + 10.0", "isnan(model->stop_time) ? 10.0",
@@ -207,7 +207,7 @@ PLACES = [
     ("if (variable->type == type)", "if (true)",
      pytest("test_up_to_date", "other_type")),
     ("value != 0.0 && value != 1.0", "false", pytest("test_parameter_types", "boolean_that_is_neither"), "check_value"),
-    (" && instance->state_was_set[variable->index] == 0.0", "", pytest("test_start_expressions", "what_is_set_stays")),
+    ("if (instance->start_was_set[i] == 0.0) *value_in(instance->state,", "*value_in(instance->state,", pytest("test_start_expressions", "what_is_set_stays")),
     ("if (initial) follow_starts(", "if (false) follow_starts(", pytest("test_start_expressions", "description")),
     ("if (last != NULL) last->inner = added;\n  else names_set(", "names_set(", pytest("test_includes", "parts_in_parts")),
     ("left * right > 0 ?", "true ?", pytest("test_tables", "values_and_derivatives")),
