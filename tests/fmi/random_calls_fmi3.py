@@ -231,7 +231,7 @@ class Run:
         state, self_state, time, waiting = self.saved[index] if index is not None else self.chance.choice(self.saved)
         was = self.state
         if self.call("fmi3SetFMUState", state, may=(OK, ERROR) if was in ("request", "intermediate") else (OK,)) == OK:
-            self.state, self.time, self.waiting = self_state, time, waiting
+            self.state, self.time, self.waiting, self.resting = self_state, time, waiting, 0
 
     def serialize(self):
         if not self.saved:

@@ -142,3 +142,13 @@ def test_no_derivative_by_the_height_of_an_impact(open_in_initialization):
     with pytest.raises(FMICallException):
         directional(instance, ["v"], "h")
     assert any("there is no derivative at these start values: beside them an impact or event leads to other states" in message[-1] for message in instance.messages)
+
+
+def test_no_derivative_of_a_contact_at_rest(open_in_initialization):
+    """A ball that rests on the ground leaves it with v upwards, and with -e v downwards: at v = 0 is a kink."""
+    instance = open_in_initialization("HitAtTheStart")
+    instance.set(v=0.0)
+    assert instance.get("der(v)") == pytest.approx(0.0)
+    with pytest.raises(FMICallException):
+        directional(instance, ["der(h)"], "v")
+    assert any("there is no derivative at these start values: beside them 'ground' starts in another mode" in message[-1] for message in instance.messages)

@@ -77,9 +77,10 @@ void reading_end(struct Instance *instance) {
 
 /*
  * Displacements of the difference quotients, in units of the scales. The relative truncation error of the first is
- * about 1e-12. The others serve where the displaced starts are not smooth.
+ * about 1e-12. The others serve where the displaced starts are not smooth. Below 1e-6 a contact at rest would end the
+ * bounces of displaced velocities, which hides the kink.
  */
-static const double displacement[] = {1e-3, 1e-5, 1e-7};
+static const double displacement[] = {1e-3, 1e-5, 1e-6};
 
 /* Largest ratio of second difference and displacement that is not a kink, in units of the scales. */
 static const double straight = 1e-2;
@@ -127,19 +128,19 @@ struct Slope {
   char other[MESSAGE_LENGTH]; /* the element that has another mode in a displaced start; empty for none */
 };
 
-/* Names an element whose mode differs from that in another snapshot. Leaves the name as it is if there is none. */
+/* Names the first element whose mode differs from that in another snapshot, unless there is a name already. */
 static void name_other_mode(const struct Instance *instance, const struct FmuState *fmu_state, char *name) {
   const struct SwitchTable *switches = lagrangian.switches;
-  if (switches == NULL) return;
+  if (switches == NULL || name[0] != '\0') return;
   const double *mode = instance->parameter;
   const double *other = fmu_state->values + (instance->parameter - instance->fmu_state->values);
-  for (size_t i = 0; i < switches->contact_count; i++)
+  for (size_t i = 0; i < switches->contact_count && name[0] == '\0'; i++)
     if (mode[switches->contacts[i].mode] != other[switches->contacts[i].mode])
       snprintf(name, MESSAGE_LENGTH, "'%s'", switches->contacts[i].name);
-  for (size_t i = 0; i < switches->friction_count; i++)
+  for (size_t i = 0; i < switches->friction_count && name[0] == '\0'; i++)
     if (mode[switches->frictions[i].mode] != other[switches->frictions[i].mode])
       snprintf(name, MESSAGE_LENGTH, "'%s'", switches->frictions[i].name);
-  for (size_t i = 0; i < switches->branch_count; i++)
+  for (size_t i = 0; i < switches->branch_count && name[0] == '\0'; i++)
     if (mode[switches->branches[i].mode] != other[switches->branches[i].mode])
       snprintf(name, MESSAGE_LENGTH, "%s on line %ld of %s", switches->branches[i].function, switches->branches[i].line,
                switches->branches[i].file);
