@@ -67,7 +67,7 @@ function showLinearization({ problem, model, eigenvalues, stability, indices }) 
   content.replaceChildren(
     paragraphOf(`At rest near the present state: ${values.join(", ")}.`),
     again, " ", buttonOf("Start there", "with these start values", () => startAt(indices.map((index, i) => [index, at[i]]))), " ", copy,
-    paragraphOf(`Eigenvalues in 1/s: ${eigenvaluesText(eigenvalues)}. This equilibrium is ${stability === "undecided" ? "undecided: real parts are 0" : stability}.`),
+    paragraphOf(`Eigenvalues in 1/s: ${eigenvaluesText(eigenvalues)}. ${stability === "undecided" ? "The linearization does not decide on stability, since real parts are 0." : `The equilibrium is ${stability}.`}`),
     ...drawn.map((one) => matrixTable(...one)),
   );
 }

@@ -253,6 +253,7 @@ const settings = () => [...controls].filter(([index, control]) => control.value 
 // Restarts with a second run of the chosen kind, or without one. The first start value of the kind "near" differs slightly.
 function chooseGhost() {
   const kind = $("ghost").value, [index, control] = [...controls].find(([index]) => description.variables[index].role === "start");
+  if (scene) scene.options.ghost = kind;
   send("ghost", { kind, differences: kind === "near" ? [[index, control.value + GHOST]] : [] });
 }
 

@@ -584,11 +584,28 @@ class Scene {
     });
   }
 
-  placeGhost(sample) {
+  // Places the pale second run, or hides it without a sample.
+  placeGhost(sample, time) {
     if (!sample && !this.ghosts) return;
-    this.ghosts = this.ghosts || this.elements.map((_, i) => this.ghostOf(i));
+    this.ghosts ??= this.elements.map((_, i) => this.ghostOf(i));
+    this.ghostLines ??= this.lines.filter(({ kind }) => !["ground", "pivot"].includes(kind)).map(({ line }) => this.ghostOfLine(line, sample, time));
     for (const ghost of this.ghosts) ghost.visible = Boolean(sample);
     if (sample) this.placeElements(this.ghosts, sample);
+    for (const ghost of this.ghostLines) {
+      if (sample && this.isKnown(ghost.line)) ghost.update(sample, time);
+      else ghost.group.visible = false;
+    }
+  }
+
+  // True if the ends of a ghost's line are known: formulas have the parameters of the first run, which may be others in a ghost that keeps its own.
+  isKnown(line) {
+    return this.options.ghost !== "kept" || (line.from !== undefined && line.to !== undefined);
+  }
+
+  ghostOfLine(line, sample, time) {
+    const ghost = new DrawnLine(this, line, this.compiled), [from, to] = ghost.at(sample, time);
+    this.world.add(ghost.build(from.distanceTo(to), 0.35));
+    return ghost;
   }
 
   ghostOf(i) {
@@ -613,7 +630,7 @@ class Scene {
     this.follow(runs[0], time);
     if (this.plane) this.enlargeView(runs[0], time);
     this.placeElements(this.objects, runs[0]);
-    this.placeGhost(runs[1]);
+    this.placeGhost(runs[1], time);
     this.placeRods(runs[0]);
     for (const line of this.lines) line.update(runs[0], time);
     this.arrows.update(history, at);

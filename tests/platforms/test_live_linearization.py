@@ -86,9 +86,14 @@ def test_a_linear_ghost(browser, page_file):
         page.click("#play")
         page.wait_for_function("live.history.length > 60")
         page.click("#play")
+        rods = """() => { const at = live.history.length - 1; live.scene.draw(live.history, at);
+          return live.scene.ghostLines.map(({ group, line }) => [line.from, line.to, group.visible, Math.atan2(group.matrix.elements[4], -group.matrix.elements[5])]); }"""
+        drawn, last = page.evaluate(rods), page.evaluate("[...live.history.samples.at(-1)[1]]")
         names, times, runs = page.evaluate("[live.names, live.history.times, live.history.samples.map(runs => runs.map(run => [...run]))]")
     rows, states = np.array([run[1] for run in runs]), fmu.states_of("DoublePendulum")
     places = [names.index(state) for state in states]
+    assert [rod[:3] for rod in drawn] == [["", "upper", True], ["upper", "lower", True]]
+    assert [rod[3] for rod in drawn] == pytest.approx([last[place] for place in places[:2]], abs=1e-6)
     frequencies, shapes = np.sqrt(G * (2 + np.array([-1, 1]) * np.sqrt(2))), np.array([[1, np.sqrt(2)], [1, -np.sqrt(2)]]).T
     amplitudes = np.linalg.solve(shapes, [0.3, 0.2])
     expected = np.array([shapes @ (amplitudes * np.cos(frequencies * time)) for time in times])
