@@ -11,7 +11,7 @@ import wasmtime
 
 import fmu
 from building import ROOT
-from driven_chromium import chromium
+from driven_chromium import browser  # noqa: F401
 from scripts.live import LABORATORY
 from scripts.live_page.editor import editor_of, files_of
 
@@ -127,12 +127,6 @@ def test_files_that_others_refer_to(tmp_path):
     robot.parent.mkdir()
     robot.write_text('<robot name="arm"><link name="base"/></robot>')
     assert files_of(robot) == {"files": {"robots/arm.urdf": robot.read_text()}, "file": "robots/arm.urdf"}
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as browser:
-        yield browser
 
 
 @contextlib.contextmanager

@@ -1,34 +1,13 @@
-"""Equilibria and linearizations of live pages, against those of the Python package; runs beside the first one."""
+"""Equilibria and linearizations of live pages, against those of the Python package; and second runs beside the first one."""
 
 import numpy as np
 import pytest
 
 import fmu
-from driven_chromium import chromium, opened
+from driven_chromium import browser, opened, page_of_fmu  # noqa: F401
 from motions import lagrange_fmu  # noqa: F401
-from scripts.live_page.page import page_of
-
 
 G = 9.81
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module")
-def page_file(tmp_path_factory):
-    folder, written = tmp_path_factory.mktemp("live"), {}
-
-    def write(name):
-        if name not in written:
-            written[name] = folder / f"{name}.html"
-            written[name].write_text(page_of(fmu.archive(name)), encoding="utf-8")
-        return written[name]
-
-    return write
 
 
 def found_in(page):
@@ -56,10 +35,10 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_equilibria_and_linearizations(browser, page_file, lagrange_fmu, name):
+def test_equilibria_and_linearizations(browser, page_of_fmu, lagrange_fmu, name):
     """A, B, C, D and eigenvalues are those of the package at the same point, which is an equilibrium for the package, too."""
     address = "#" + "&".join(f"{key}={value}" for key, value in CASES[name].items())
-    with opened(browser, page_file(name), address) as page:
+    with opened(browser, page_of_fmu(name), address) as page:
         found = found_in(page)
         assert found.get("problem") is None
         model = found["model"]
@@ -78,9 +57,9 @@ def test_equilibria_and_linearizations(browser, page_file, lagrange_fmu, name):
     assert found["stability"] == rest.stability
 
 
-def test_a_linear_ghost(browser, page_file):
+def test_a_linear_ghost(browser, page_of_fmu):
     """The linearized motion of the hanging double pendulum is that of the exponential of A, and its potential energy follows from its angles."""
-    with opened(browser, page_file("DoublePendulum"), "#theta1=0.3&theta2=0.2") as page:
+    with opened(browser, page_of_fmu("DoublePendulum"), "#theta1=0.3&theta2=0.2") as page:
         page.select_option("#ghost", "linear")
         page.wait_for_function("live.history.runs === 2")
         page.click("#play")
@@ -103,9 +82,9 @@ def test_a_linear_ghost(browser, page_file):
     assert np.abs(rows - np.array([run[0] for run in runs])).max() > 1e-3
 
 
-def test_a_ghost_keeps_its_values(browser, page_file):
+def test_a_ghost_keeps_its_values(browser, page_of_fmu):
     """Parameters change in the first run alone; a key pushes both; without an equilibrium there is no linear ghost, and the page says why."""
-    with opened(browser, page_file("InvertedPendulumCart")) as page:
+    with opened(browser, page_of_fmu("InvertedPendulumCart")) as page:
         page.select_option("#ghost", "kept")
         page.wait_for_function("live.history.runs === 2")
         page.get_by_role("spinbutton", name="g", exact=True).fill("1.62")

@@ -5,9 +5,7 @@ import re
 import numpy as np
 import pytest
 
-import fmu
-from driven_chromium import chromium, opened
-from scripts.live_page.page import page_of
+from driven_chromium import browser, opened, page_of_fmu  # noqa: F401
 
 # A driver of the crane: speeds in proportion to the distances that are left, set by the number fields.
 DRIVE = """() => {
@@ -23,22 +21,9 @@ DRIVE = """() => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def browser():
-    with chromium() as browser:
-        yield browser
-
-
-@pytest.fixture(scope="module")
-def crane(tmp_path_factory):
-    file = tmp_path_factory.mktemp("live") / "GantryCrane.html"
-    file.write_text(page_of(fmu.archive("GantryCrane")), encoding="utf-8")
-    return file
-
-
-def test_a_load_is_delivered(browser, crane):
+def test_a_load_is_delivered(browser, page_of_fmu):
     """The task starts from its preset, and is done at the end of the first 2 s in which the load hangs at rest at its place."""
-    with opened(browser, crane) as page:
+    with opened(browser, page_of_fmu("GantryCrane")) as page:
         page.get_by_role("spinbutton", name="m", exact=True).fill("300")
         page.get_by_role("spinbutton", name="m", exact=True).press("Enter")
         page.fill("#speed", "1")

@@ -1,8 +1,13 @@
 """Live pages in headless Chromium, controlled by a test."""
 
 import contextlib
+import functools
 
+import pytest
 from playwright.sync_api import sync_playwright
+
+import fmu
+from scripts.live_page.page import page_of
 
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
@@ -24,6 +29,12 @@ def chromium():
         browser.close()
 
 
+@pytest.fixture(scope="module")
+def browser():
+    with chromium() as browser:
+        yield browser
+
+
 @contextlib.contextmanager
 def opened(browser, file, settings=""):
     """Yield the page once it is ready; check at the end that it logged no error."""
@@ -35,3 +46,17 @@ def opened(browser, file, settings=""):
     yield page
     page.close()
     assert complaints == []
+
+
+@pytest.fixture(scope="module")
+def page_of_fmu(tmp_path_factory):
+    """Return a function that writes the live page of a system once, and returns its file."""
+    folder = tmp_path_factory.mktemp("live")
+
+    @functools.cache
+    def write(name):
+        file = folder / f"{name}.html"
+        file.write_text(page_of(fmu.archive(name)), encoding="utf-8")
+        return file
+
+    return write
