@@ -102,6 +102,17 @@ def test_it_is_the_fmu(name, tmp_path):
     np.testing.assert_allclose(found, native_states(name, STEPS, step), rtol=1e-9, atol=1e-9)
 
 
+def test_start_values_from_parameters(tmp_path):
+    """Of a state and of a mode: x = l + (g/m) t^2/2."""
+    (tmp_path / "system.xml").write_text("""<system name="Pushed"><parameter name="l" start="3" unit="m"/><parameter name="g" start="5" unit="N"/><parameter name="m" start="2" unit="kg"/>
+      <coordinate name="x" velocity="v" unit="m" start="l"/><mode name="a" unit="m/s2" start="g/m"/><particle mass="m" x="x"/><force coordinate="x">m*a</force>
+      <event when="x - 100*l" direction="rising"><set mode="a">0</set></event></system>""")
+    laboratory = Laboratory(tmp_path, tmp_path / "errors")
+    assert laboratory.derive("system.xml"), (tmp_path / "errors").read_text()
+    references = {variable.get("name"): int(variable.get("valueReference")) for variable in laboratory.description().find("ModelVariables")}
+    np.testing.assert_allclose(laboratory.states_after(4, 0.5, [references[name] for name in ("x", "v", "a")]), [8, 5, 2.5], rtol=1e-12)
+
+
 def test_mistakes(tmp_path):
     (tmp_path / "system.xml").write_text('<system name="Wrong">\n  <coordinate name="x"/>\n  <kinetic>m*v^2</kinetic>\n</system>\n')
     assert not Laboratory(tmp_path, tmp_path / "errors").derive("system.xml")
