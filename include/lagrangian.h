@@ -185,6 +185,13 @@ struct PlaneMetadata {
   size_t lower, upper;      /* modes that hold speeds; upper < 0 is a bound on the velocity along the slip direction */
 };
 
+/* A velocity that is exactly 0 at rest in all that uses it: the index of its mode, and of its coordinate. */
+struct RestingMetadata {
+  size_t mode; /* 1 while it is free, 0 at rest */
+  size_t coordinate;
+  bool is_prescribed; /* its motion is */
+};
+
 /* An assignment of an event, to a state or a mode. */
 struct AssignmentMetadata {
   enum VariableKind kind;
@@ -209,6 +216,7 @@ struct SampleMetadata {
 
 struct ContactLaws;
 struct FrictionLaws;
+struct Resolution;
 struct TimeLaws;
 
 /*
@@ -251,6 +259,9 @@ struct SwitchTable {
   void (*switching_values)(const struct Point *point, const Real *acceleration, Real *value);
   const struct PlaneMetadata *planes; /* ascending; NULL if there are none */
   size_t plane_count;
+  const struct RestingMetadata *resting; /* NULL if there are none */
+  size_t resting_count;
+  void (*find_resting)(struct Resolution *resolution); /* contacts/resting_velocities.h; NULL without such velocities */
   /* Branches whose indicators depend only on time, parameters and modes: affine_count that are affine in time, others. */
   const size_t *timed;
   size_t timed_count, affine_count;

@@ -212,13 +212,22 @@ def columns_of(data):
         data = data if "time" in data.columns else data.reset_index()
         return {str(name): np.asarray(data[name]) for name in data.columns}
     names = data if isinstance(data, Mapping) else data.dtype.names
-    return {name: np.atleast_1d(data[name]) for name in names}
+    return {name: _column(name, data[name]) for name in names}
+
+
+def _column(name, values):
+    try:
+        return np.atleast_1d(values)
+    except ValueError:
+        raise Problem(f"'{name}' of the input has rows of different lengths; expected a number for each time") from None
 
 
 def _checked(columns):
     """Return the columns as arrays of floats; raise Problem for missing values, wrong lengths or decreasing times."""
     if "time" not in columns:
         raise Problem(f"the input has no 'time' but {', '.join(map(repr, columns))}; expected the times of its rows under this name")
+    if np.ndim(columns["time"]) != 1:
+        raise Problem(f"'time' of the input has the shape {np.shape(columns['time'])}; expected one time for each row")
     count, found = len(columns["time"]), {}
     for name, values in columns.items():
         if len(values) != count or count == 0:

@@ -124,10 +124,11 @@ def _check_options(options, allowed):
 
 def settings_of(fmu, settings):
     """Return start values and parameters of an FMU, texts with units too, as numbers by name; raise Problem if one cannot be set."""
+    settings = numbers_by_name(settings)
     if not settings:
         return {}
     description = described(fmu)
-    return checked_start(numbers_by_name(settings), description, startable(description))
+    return checked_start(settings, description, startable(description))
 
 
 def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSimulation", **options):

@@ -20,7 +20,7 @@ SAMPLES = 1000  # for extremes, in a run of an FMU without step size
 
 def items_of(given):
     """Return the list of items of a text such as "height.max,omega@end", or of several such texts."""
-    return list(dict.fromkeys(item.strip() for text in names_of(given or [], "record") for item in text.split(",") if item.strip()))
+    return list(dict.fromkeys(item.strip() for text in names_of([] if given is None else given, "record") for item in text.split(",") if item.strip()))
 
 
 def _split(text, ends):

@@ -104,7 +104,7 @@ def numbers_by_name(given, what="start_values"):
 
 def pairs_by_name(given):
     """Return bounds as a dict of pairs; raise Problem for others."""
-    bounds = given or {}
+    bounds = {} if given is None else given
     if not isinstance(bounds, Mapping):
         raise Problem(f"bounds is {bounds!r}; expected a dict of pairs by name, such as {{'l': (0.5, 2)}}")
     for name, pair in bounds.items():

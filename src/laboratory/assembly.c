@@ -9,6 +9,7 @@
 
 #include "algebra/functions.h"
 #include "base/memory.h"
+#include "contacts/resting_velocities.h"
 #include "events/resolution.h"
 #include "instance/event_laws.h"
 #include "instance/projection.h"
@@ -139,6 +140,7 @@ static struct SwitchTable *switches_of(const struct Program *program) {
   if (switches->contact_count > 0) switches->contact_laws = &contact_laws;
   if (switches->friction_count > 0)
     switches->friction_laws = switches->plane_count > 0 ? &plane_friction_laws : &friction_laws;
+  if (switches->resting_count > 0) switches->find_resting = resting_find;
   if (switches->timed_count > 0) switches->time_laws = &time_laws;
   return switches;
 }

@@ -273,6 +273,15 @@ main()
 """
 
 
+@pytest.mark.parametrize("module", ["lagrange_fmu.calls", "lagrange_fmu.variables", "lagrange_fmu.__main__"])
+def test_an_interrupt_while_the_package_is_imported(module, tmp_path):
+    """Python imports the package before the module of the command."""
+    folder = package.assemble(tmp_path / "package")
+    (folder / "sitecustomize.py").write_text(INTERRUPTED.partition("from lagrange_fmu")[0].replace("MODULE", repr(module)))
+    result = package.python(folder, "-m", "lagrange_fmu", "run", fmu.archive("SimplePendulum"), cwd=tmp_path)
+    assert result.returncode == 130 and result.stderr == ""
+
+
 @pytest.mark.parametrize("module", ["lagrange_fmu.command", "shtab", "lagrange_fmu.commands.words", "lagrange_fmu.running", "fmpy", "numpy"])
 def test_an_interrupt_while_modules_are_imported(module, tmp_path):
     folder = package.assemble(tmp_path / "package")
@@ -388,7 +397,8 @@ FMU = PENDULUM
 blocked = ("sympy", "scipy", "scipy.integrate", "pandas", "distributed", "pyarrow")
 sys.modules |= dict.fromkeys(blocked)
 for call in (lambda: lagrange_fmu.from_sympy(None, "A.xml", {}), lambda: lagrange_fmu.fit(FMU, "data.csv", "l"), lambda: lagrange_fmu.simulate(FMU, stop_time=0.1).to_pandas(),
-             lambda: lagrange_fmu.sweep(FMU, {"l": [1, 2]})):
+             lambda: lagrange_fmu.sweep(FMU, {"l": [1, 2]}), lambda: lagrange_fmu.sensitivities(FMU, "theta", "l", [1]),
+             lambda: lagrange_fmu.gradient(FMU, "theta", "l", 1)):
     try:
         call()
     except lagrange_fmu.Problem as problem:
@@ -414,7 +424,7 @@ calls = [
     lambda: lagrange_fmu.sweep(FMU, {"q": (1, 2, 3)}),
     lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2)}, random=-1),
     lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, seed=-1),
-    lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, stop_time="2"),
+    lambda: lagrange_fmu.sweep(FMU, {"l": (1, 2, 3)}, stop_time=[2]),
     lambda: lagrange_fmu.live(FMU, edit=True),
     lambda: lagrange_fmu.live("pendulum.xml", edit=True, start_values={"l": 1}),
     lambda: lagrange_fmu.live(FMU, start_values={"L": 1}),
@@ -427,6 +437,18 @@ calls = [
     lambda: lagrange_fmu.sweep(FMU),
     lambda: lagrange_fmu.build("pendulum.xml", plattforms=["linux64"]),
     lambda: lagrange_fmu.simulate(FMU, input=lambda: 3),
+    lambda: lagrange_fmu.simulate(FMU, stop_time="3 kg"),
+    lambda: lagrange_fmu.simulate(FMU, step=[0.1]),
+    lambda: lagrange_fmu.simulate(FMU, tolerance="small"),
+    lambda: lagrange_fmu.simulate(FMU, hold="yes"),
+    lambda: lagrange_fmu.simulate(FMU, fmi_type=3),
+    lambda: lagrange_fmu.simulate(FMU, input="pendulm.csv"),
+    lambda: lagrange_fmu.simulate(FMU, input={"time": [[0, 1], [1, 2]], "F": [1, 2]}),
+    lambda: lagrange_fmu.simulate(FMU, input={"time": [0, 1], "F": [[1], [1, 2]]}),
+    lambda: lagrange_fmu.run(FMU, folder=3),
+    lambda: lagrange_fmu.new(3),
+    lambda: lagrange_fmu.sensitivities(FMU, "theta", "l", [[0, 1], [2, 3]]),
+    lambda: len(lagrange_fmu.simulate(FMU, stop_time="100 ms", step="50ms")),
     lambda: lagrange_fmu.simulate(FMU, stop_time=0.1)["omgea"],
     lambda: lagrange_fmu.linearize(FMU).bode(frequency=1),
 ]
@@ -442,6 +464,8 @@ SENTENCES = [
     "derivatives of motions and fits need SciPy; install it with",
     "pandas is not installed; it comes with pip install pandas",
     "pyarrow is not installed; it comes with pip install pyarrow",
+    "derivatives of motions and fits need SciPy; install it with",
+    "derivatives of motions and fits need SciPy; install it with",
     "'totalEnergi' is not a variable of SimplePendulum; did you mean 'totalEnergy'?",
     "'start' is not an option of this simulation; expected one of these: start_values, output, input, ",
     "'stop_tmie' is not an option of this simulation; did you mean 'stop_time'?",
@@ -460,19 +484,31 @@ SENTENCES = [
     "'q' has no start value in SimplePendulum; these have one: ",
     "random is -1; expected a whole number of runs",
     "seed is -1; expected a whole number that is not negative",
-    "stop_time is '2'; expected a positive number",
+    "stop_time is [2]; expected a number of seconds, or a text such as '3s'",
     f"{fmu.archive('SimplePendulum')} is an FMU, which cannot be edited; expected the system.xml of which it was made",
     "an editable page of pendulum.xml starts with the values in the file; expected edit=True without l",
     "'L' is not a variable of SimplePendulum; did you mean 'l'?",
     "the reference says nothing about 'restitutoin'; did you mean 'restitution'?",
     "the reference says nothing about 'restitutio'; did you mean 'restitution'?",
-    "the word is 3; expected a text",
+    "word is 3; expected a text",
     "the system is None; expected the path of a system or of an FMU",
     "the system is None; expected the path of a system or of an FMU",
     "'randm' is not an argument of sweep; did you mean 'random'?",
     "sweep: missing a required argument: 'vary'; expected sweep(system, vary, *, random=None, ",
     "'plattforms' is not an argument of build; did you mean 'platforms'?",
     "the function of the input cannot be called with the time alone; expected one such as lambda t: 2*t, ",
+    "stop_time: ",
+    "step is [0.1]; expected a number of seconds, or a text such as '3s'",
+    "tolerance is 'small'; expected a number",
+    "hold is 'yes'; expected True or False",
+    "fmi_type is 3; expected a text",
+    "there is no file pendulm.csv; ",
+    "'time' of the input has the shape (2, 2); expected one time for each row",
+    "'F' of the input has rows of different lengths; expected a number for each time",
+    "folder is 3; expected a path",
+    "name is 3; expected a text",
+    "the times have the shape (2, 2); expected a list of numbers, in s",
+    "3",
     "'omgea' is not recorded; did you mean 'omega'?",
     "'frequency' is not an argument of bode; did you mean 'frequencies'?",
     "('time', 'totalEnergy')",

@@ -28,6 +28,20 @@ BODIES = {
     + FRICTION.format('velocity="w - v"'),
 }  # fmt: skip
 
+# A drive that stops and dwells from 0.5 s on, or from 1 s on, and starts again at 2 s; joined to a second body.
+STOP = "if(time &lt; 0.25, 2, if(time &lt; 0.5, -2, if(time &lt; 2, 0, {0})))"
+SWING = "if(time &lt; 1, 2*pi*cos(2*pi*time), if(time &lt; 2, 0, {0}))"
+JOINED = '<coordinate name="y" velocity="w"/><particle mass="1" x="y"/><constraint name="rod">{0}</constraint>'
+DWELLS = {
+    "Alone": (DRIVE.format(STOP.format(3)) + FRICTION.format('coordinate="x"'), 0, 0.5, 3),
+    "Same": (DRIVE.format(STOP.format(3)) + JOINED.format("y - x") + FRICTION.format('coordinate="y"'), 1, 0.5, 3),
+    "Lever": (DRIVE.format(STOP.format(-3)) + JOINED.format("y - 4*x") + FRICTION.format('coordinate="y"'), 4, 0.5, -3),
+    "Rates": (DRIVE.format(STOP.format(-3)) + JOINED.format("w + 0.3*v") + FRICTION.format('coordinate="y"'), -0.3, 0.5, -3),
+    "Turned": (DRIVE.format(STOP.format(3)) + JOINED.format("sin(y) - sin(x)*0.7") + FRICTION.format('coordinate="y"'), None, 0.5, 3),
+    "Swing": (DRIVE.format(SWING.format(3)) + FRICTION.format('coordinate="x"'), 0, 1, 3),
+    "SwingLever": (DRIVE.format(SWING.format(-3)) + JOINED.format("y - 3*x") + FRICTION.format('coordinate="y"'), 3, 1, -3),
+}  # fmt: skip
+
 
 def after(time, start, value):
     return value if time > start else 0
@@ -86,6 +100,11 @@ def built():
         for method in METHODS:
             name = name_of(body, method)
             texts[name] = f'<system name="{name}">{elements}{output}<solver method="{method}" tolerance="1e-9"/></system>'
+    for body, (elements, *_) in DWELLS.items():
+        for method in METHODS:
+            name = f"Dwells{body}{method.title()}"
+            texts[name] = (f'<system name="{name}">{elements}<output name="drive">x.force</output><output name="turns">sign(v)</output>'
+                           f'<solver method="{method}" tolerance="1e-9"/></system>')  # fmt: skip
     build_systems("given-frictions", texts)
 
 
@@ -146,3 +165,30 @@ def test_no_force_where_a_given_velocity_passes_through_0(open_fmu, body, method
     instance = open_fmu(name_of(body, method)).initialize()
     instance.run(1, 1 / steps)
     assert instance.get("rub.force", "rub.across.force", "drive", "across") == pytest.approx([0, 0, *PRESCRIBED[body](1)[1]], abs=0.01)
+
+
+def check_dwell(body, time, drive, force, turns):
+    """At rest nothing acts. After 2 s the second body moves k times as fast, and friction opposes it."""
+    _, k, stop, rate = DWELLS[body]
+    if stop + 0.01 < time < 1.99:
+        assert (drive, force, turns) == (pytest.approx(0, abs=1e-12), 0, 0), time
+    elif time > 2.01 and k is not None:
+        direction, ratio = np.sign(rate * (k or 1)), k or 1
+        assert (force, turns) == (5 * direction, np.sign(rate)), time
+        assert drive == pytest.approx(rate * (1 + k**2) + ratio * 5 * direction, abs=1e-6), time
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("body", DWELLS)
+def test_dwelling_drives(open_fmu, body, method):
+    instance = open_fmu(f"Dwells{body}{method.title()}").initialize()
+    for time, *values in instance.run(3, 0.0625, "drive", "rub.force", "turns"):
+        check_dwell(body, time, *values)
+
+
+@pytest.mark.parametrize("body", DWELLS)
+def test_dwelling_drives_in_model_exchange(body):
+    rows = fmpy.simulate_fmu(str(fmu.archive(f"Dwells{body}Taylor")), fmi_type="ModelExchange", stop_time=3, output_interval=0.0625,
+                             output=["drive", "rub.force", "turns"], relative_tolerance=1e-9)  # fmt: skip
+    for row in rows:
+        check_dwell(body, row["time"], row["drive"], row["rub.force"], row["turns"])

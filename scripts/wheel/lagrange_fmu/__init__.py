@@ -11,6 +11,8 @@ Numbers are in the units of the variables, SI units by default. Values may also 
 
 from __future__ import annotations
 
+from . import interrupts  # noqa: F401  # isort: skip  (first, as the other imports take long)
+
 from collections.abc import Callable, Mapping, Sequence
 from os import PathLike
 from pathlib import Path

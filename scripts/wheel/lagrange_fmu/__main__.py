@@ -1,16 +1,13 @@
 """Run the command lagrange-fmu; its modules are imported while a handler of interrupts is set."""
 
-import os
-import signal
+from . import interrupts
 
 
 def main():
-    handler = signal.getsignal(signal.SIGINT)
-    if handler is signal.default_int_handler:
-        signal.signal(signal.SIGINT, lambda *received: os._exit(130))  # KeyboardInterrupt during imports may be swallowed or replaced by another exception
+    interrupts.end_quietly()
     from .command import main
 
-    signal.signal(signal.SIGINT, handler)
+    interrupts.raise_again()
     main()
 
 

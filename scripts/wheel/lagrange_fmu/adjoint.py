@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from . import with_scipy  # noqa: F401, first, since it raises Problem if SciPy is missing
 from .experiment import Experiment, check_noise
 from .model_exchange import opened
 from .problem import Problem

@@ -14,13 +14,14 @@ from contextlib import ExitStack
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
+from . import with_scipy  # noqa: F401, first, since it raises Problem if SciPy is missing
 from .building import system_file
 from .experiment import Experiment, check_noise
 from .fit_result import Fit
 from .problem import Problem
 from .quantities import number_of, numbers_of
 from .running import is_fmu
-from .sensitivity import check_names, check_once  # first, since it raises Problem if SciPy is missing
+from .sensitivity import check_names, check_once
 from .variational import DifferencedMotion, followed, motion, stepped
 
 from scipy.optimize import least_squares  # isort: skip

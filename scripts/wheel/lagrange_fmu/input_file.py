@@ -6,6 +6,7 @@ import re
 import numpy as np
 
 from .problem import Problem
+from .variables import near_file
 
 NOTHING = ("", "NA", "nan")  # cells of missing values
 
@@ -19,6 +20,8 @@ def _rows_of(path):
             separator = next((mark for mark in ";\t" if mark in first), ",")
             reader = csv.reader(file, delimiter=separator)
             return [(reader.line_num, [word.strip() for word in row]) for row in reader if row], separator
+    except FileNotFoundError:
+        raise Problem(f"there is no file {path}{near_file(path) or '; expected a CSV with time and names of variables'}") from None
     except (UnicodeDecodeError, csv.Error) as problem:
         raise Problem(f"{path} is not a text of UTF-8 with columns ({problem}); expected a CSV, which a spreadsheet saves as 'CSV UTF-8'") from None
 

@@ -8,18 +8,12 @@ differential equations I, section I.14).
 """
 
 import numpy as np
-
-from .problem import Problem
-
-try:
-    from .stepping import Steps
-except ImportError:
-    raise Problem("derivatives of motions and fits need SciPy; install it with: pip install 'lagrange-fmu[fit]'") from None
-
 from fmpy.fmi1 import FMICallException
 
 from .differences import relevant, rules_within
+from .problem import Problem
 from .saltation import Saltation, crossing_of
+from .stepping import Steps
 
 INTERVALS = 8  # intervals of a step in which the event indicators are compared; a double crossing within one is missed
 STEP = 1e-3  # relative, of differences through initialization

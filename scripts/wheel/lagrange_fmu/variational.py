@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
+from . import with_scipy  # noqa: F401, first, since it raises Problem if SciPy is missing
 from .building import derive
 from .event_motion import EventMotion
 from .model_exchange import along, opened, lagc_options
@@ -166,6 +167,8 @@ def sensitivities(system, of, by, times, start_values, tolerance):
         times = np.atleast_1d(np.asarray(times, dtype=float))
     except (TypeError, ValueError):
         raise Problem(f"the times are {times}; expected numbers, in s") from None
+    if times.ndim > 1:
+        raise Problem(f"the times have the shape {times.shape}; expected a list of numbers, in s")
     if not (times.size and np.isfinite(times).all() and times[0] >= 0 and (np.diff(times) > 0).all()):
         raise Problem(f"the times are {', '.join(f'{time:g}' for time in times)} s; expected one at least, from 0 s on, each later than the one before")
     check_tolerance(tolerance)

@@ -61,6 +61,16 @@ struct Remainder {
   Node node, divisor;
 };
 
+/*
+ * A velocity that conditions, functions or outputs use. Its mode is 1 while it is free, and 0 at rest: sticking
+ * frictions, closed contacts and constraints keep it at 0, or its prescribed motion dwells.
+ */
+struct RestingVelocity {
+  Node mode;
+  size_t coordinate;
+  bool is_prescribed; /* its motion is */
+};
+
 /* An assignment of an event, to a coordinate, a velocity or a mode. */
 struct Assignment {
   Node symbol, value;
@@ -99,6 +109,8 @@ struct Switches {
   size_t contact_count;
   struct Friction *frictions;
   size_t friction_count;
+  struct RestingVelocity *resting;
+  size_t resting_count;
   struct Event *events;
   size_t event_count;
 };

@@ -19,7 +19,7 @@
 
 #include "base/memory.h"
 #include "model/prescribed_frictions.h"
-#include "model/sticking_velocities.h"
+#include "model/resting_velocities.h"
 #include "read/checks.h"
 #include "read/context/attributes.h"
 #include "read/context/includes.h"
@@ -152,7 +152,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
     add_sliding_forces_in_planes(reader);
   }
   complete_friction_forces(reader);
-  if (reader->diagnostics->errors == 0) replace_sticking_velocities(reader->model);
+  if (reader->diagnostics->errors == 0) replace_resting_velocities(reader->model);
   reader->model->forces.any |= reader->model->prescribed.inputs_move;
   check_system(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)

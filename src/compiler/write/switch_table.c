@@ -68,6 +68,17 @@ static void write_planes(FILE *file, const struct SwitchTable *metadata) {
   fputs("};\n\n", file);
 }
 
+static void write_resting(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->resting_count == 0) return;
+  fputs("void resting_find(struct Resolution *resolution);\n\n"
+        "static const struct RestingMetadata resting_metadata[] = {",
+        file);
+  for (size_t i = 0; i < metadata->resting_count; i++)
+    fprintf(file, "{%zu, %zu, %s}, ", metadata->resting[i].mode, metadata->resting[i].coordinate,
+            name_of(metadata->resting[i].is_prescribed));
+  fputs("};\n\n", file);
+}
+
 static void write_rests(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->rests_on == NULL) return;
   fputs("static const bool rests[] = {", file);
@@ -142,6 +153,9 @@ static void write_table(FILE *file, const struct Program *program, const struct 
     fprintf(file, "    .frictions = friction_metadata,\n    .friction_laws = &%s,\n", friction_laws_of(metadata));
   if (metadata->plane_count > 0)
     fputs("    .planes = plane_metadata,\n    .plane_count = sizeof plane_metadata / sizeof *plane_metadata,\n", file);
+  if (metadata->resting_count > 0)
+    fprintf(file, "    .resting = resting_metadata,\n    .resting_count = %zu,\n    .find_resting = resting_find,\n",
+            metadata->resting_count);
   if (metadata->event_count > 0)
     fputs("    .events = event_metadata,\n    .assignments = assignment_metadata,\n", file);
   if (metadata->timed_count > 0)
@@ -164,6 +178,7 @@ void switching_write(FILE *file, const struct Program *program) {
   write_contacts(file, &metadata);
   write_frictions(file, &metadata);
   write_planes(file, &metadata);
+  write_resting(file, &metadata);
   write_rests(file, &metadata);
   write_events(file, &metadata);
   write_timed(file, &metadata);

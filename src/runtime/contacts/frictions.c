@@ -21,11 +21,6 @@
 #include "evaluation/services.h"
 #include "events/continuity.h"
 
-/*
- * In s: a rate counts as a rounding error if it changes the velocity by less than its rounding error within this time.
- */
-static const double shortest_slip = 1e-4;
-
 /* In rounding error bounds: the sign of a smaller force is not determined. */
 static const double least_certainty = 4.0;
 

@@ -57,15 +57,27 @@ static bool passes(const struct Resolution *resolution, size_t branch) {
 }
 
 /*
- * True if an indicator at 0 without a rate stays there: a friction has begun to stick in this event, or a prescribed
- * motion has come to rest.
+ * True if an indicator at 0 without a rate stays there: a friction has begun to stick in this event, a velocity in it
+ * has come to rest, or a prescribed motion.
  */
 static bool stays_at_zero(const struct Resolution *resolution, size_t branch) {
   const struct SwitchTable *switches = resolution->switches;
-  bool rests = is_driven(resolution, branch);
+  bool rests = is_driven(resolution, branch) || (resolution->has_rested && resolution->value[branch] == 0.0);
   for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_last_sign; i++)
     rests |= resolution->began[i] != 0.0 && friction_holds(resolution->instance, i);
   return rests;
+}
+
+/*
+ * Returns the rounding error bound of the rate of an indicator at 0. After a jump, even the smallest rate counts: it is
+ * not left by rounding. A velocity that leaves rest as a friction slips begins with the difference of two equal forces,
+ * and constraints leave that of two equal accelerations where a drive stops.
+ */
+static double error_bound_of_rate(const struct Resolution *resolution, size_t branch, double error_bound) {
+  bool leaves_rest = resolution->has_left_rest || (resolution->is_departure && is_hit(resolution, branch));
+  if (resolution->jumped) return 0.0;
+  double noise = leaves_rest || is_driven(resolution, branch) ? error_bound / shortest_slip : 0.0;
+  return resolution->error_bound[branch_rate_slot(resolution->switches, branch)] + noise;
 }
 
 /* Returns the next sign of an indicator: its own, or at 0 that of its rate. */
@@ -76,8 +88,7 @@ static double branch_mode(const struct Resolution *resolution, size_t branch) {
   if (comes_back(resolution, branch, mode, error_bound)) return mode;
   double sign = sign_with_error_bound(resolution->value[branch], error_bound);
   if (sign != 0.0) return sign;
-  /* After a jump, even the smallest rate counts: it is not left by rounding. */
-  sign = sign_with_error_bound(resolution->value[rate], resolution->jumped ? 0.0 : resolution->error_bound[rate]);
+  sign = sign_with_error_bound(resolution->value[rate], error_bound_of_rate(resolution, branch, error_bound));
   if (sign != 0.0) return sign;
   if (passes(resolution, branch)) return mode == 0.0 ? resolution->instance->departure : -mode;
   /* Values that were set to 0, without a rate, are at rest, whatever their sign was. */
@@ -199,6 +210,7 @@ void branches_guess(struct Instance *instance) {
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
   for (size_t i = 0; i < switches->friction_count; i++)
     instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].reported] = 1.0;
+  for (size_t i = 0; i < switches->resting_count; i++) instance->parameter[switches->resting[i].mode] = 1.0;
   guess_branches(instance);
   if (switches->plane_count > 0) switches->friction_laws->guess(instance);
 }

@@ -27,7 +27,10 @@ struct Resolution {
   double *first_mode;          /* of each contact, then each friction: at the start of the event */
   double *struck;              /* contacts: 1 if an impulse acted in the event, else 0 */
   double *takes_part;          /* of each contact, then each friction: 1 if in struct ContactImpulses, else 0 */
-  double *acceleration;        /* accelerations, then constraint forces */
+  double *moves;               /* of each resting velocity: its mode by find_resting */
+  double *drove;               /* of each resting velocity: its acceleration at the start of the event */
+  double *probe_input, *probe_acceleration; /* workspace of find_resting */
+  double *acceleration;                     /* accelerations, then constraint forces */
   double *kept_modes;
   double *rounded, *derivative, *rounding, *correction;
   const struct BranchMetadata *switched;  /* the first branch that switched; NULL for none */
@@ -39,6 +42,8 @@ struct Resolution {
   bool lags;                              /* frictions have switched, and velocities were not projected since */
   bool came_to_rest;                      /* contacts came to rest in their last round */
   bool is_evaluated;                      /* value[] and error_bound are valid */
+  bool has_rested, has_left_rest;         /* a velocity has come to rest, or has left it */
+  bool is_departure;                      /* the indicator, of a branch, was at rest at 0 until the event */
   bool has_started;                       /* contacts and frictions have their modes of the start, for AT_START */
   bool has_shared;                        /* contacts at rest share the load */
   bool has_several_motions;               /* several motions of the frictions were logged */
@@ -150,6 +155,11 @@ bool resolution_moves(const struct Resolution *resolution, size_t constraint);
 
 /* Projects the coordinates onto the active constraints, by the least change in the metric of M. False if that fails. */
 bool resolution_project_coordinates(struct Resolution *resolution);
+
+/*
+ * In s: a rate counts as a rounding error if it changes the velocity by less than its rounding error within this time.
+ */
+static const double shortest_slip = 1e-4;
 
 /* True if the zero of this indicator is the event. */
 static inline bool is_hit(const struct Resolution *resolution, size_t indicator) {

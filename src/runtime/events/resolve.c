@@ -56,6 +56,29 @@ static const char *report_friction_modes(struct Resolution *resolution, bool *ag
   return laws == NULL || laws->report(resolution, again) ? NULL : no_accelerations;
 }
 
+/* Finds which velocities rest; sets *again if any stops or leaves rest. */
+static const char *find_resting_velocities(struct Resolution *resolution, bool *again) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (switches->find_resting == NULL) return NULL;
+  switches->find_resting(resolution);
+  for (size_t i = 0; i < switches->resting_count; i++) {
+    if (resolution->moves[i] == mode_of(resolution, switches->resting[i].mode)) continue;
+    resolution_set_mode(resolution, switches->resting[i].mode, resolution->moves[i]);
+    if (resolution->moves[i] == 0.0) resolution->has_rested = true;
+    else resolution->has_left_rest = true;
+    *again = true;
+  }
+  return NULL;
+}
+
+/* Sets velocities at rest to 0: projections leave rounding errors, and methods errors in prescribed motions. */
+static void set_resting_velocities(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->resting_count && resolution->changed; i++)
+    if (mode_of(resolution, switches->resting[i].mode) == 0.0)
+      resolution->state[lagrangian.coordinate_count + switches->resting[i].coordinate] = 0.0;
+}
+
 /*
  * Switches the signs of the expressions of events. An importer comes to an event late: velocities that stick from it on
  * are brought to rest first.
@@ -70,8 +93,8 @@ static const char *switch_last_signs(struct Resolution *resolution, bool *again)
 
 /* The mechanisms that a round tries in turn, up to the first that changes something. */
 static const char *(*const actions[])(struct Resolution *resolution, bool *again) = {
-    act_by_contacts,    switch_pieces,         act_by_frictions,  resolve_contact_forces,
-    let_touching_share, report_friction_modes, switch_last_signs, conditions_happen};
+    act_by_contacts,       switch_pieces,           act_by_frictions,  resolve_contact_forces, let_touching_share,
+    report_friction_modes, find_resting_velocities, switch_last_signs, conditions_happen};
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
 
 /* Makes one round; sets *again if it changed something. */
@@ -192,6 +215,8 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
                     bool *changed) {
   struct Resolution resolution = resolution_at(instance, time, state, occasion);
   resolution.indicator = indicator;
+  resolution.is_departure = occasion == AT_EVENT && indicator < resolution.switches->branch_count &&
+                            mode_of(&resolution, resolution.switches->branches[indicator].mode) == 0.0;
   for (size_t i = 0; i < switching_count(resolution.switches); i++)
     resolution.first_mode[i] = switching_mode(&resolution, i);
   const char *problem = begin_resolution(&resolution);
@@ -205,6 +230,7 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
   if (problem == NULL) problem = check_laws(&resolution);
   if (problem == NULL) problem = keep_on_constraints(&resolution);
   if (problem == NULL) problem = continuity_check_corner(&resolution);
+  if (problem == NULL) set_resting_velocities(&resolution);
   if (resolution.changed && occasion != AT_START) {
     instance->fmu_state->statistics[STATISTIC_EVENTS]++;
     if (problem == NULL) log_switches(&resolution);

@@ -130,6 +130,8 @@ static bool are_modes(const char *parameters) {
     if (!is_whole(parameters, switches->contacts[i].mode, 0.0, 1.0)) return false;
   for (size_t i = 0; i < switches->friction_count; i++)
     if (!is_whole(parameters, switches->frictions[i].mode, -1.0, 1.0)) return false;
+  for (size_t i = 0; i < switches->resting_count; i++)
+    if (!is_whole(parameters, switches->resting[i].mode, 0.0, 1.0)) return false;
   return true;
 }
 

@@ -1,7 +1,7 @@
 /* <friction>: dry friction along a velocity, or in the plane of two velocities. */
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
-#include "model/sticking_velocities.h"
+#include "model/resting_velocities.h"
 #include "read/context/constraint_checks.h"
 #include "read/elements/switching_reader.h"
 #include "read/space/forces.h"

@@ -1,0 +1,109 @@
+#include "model/resting_velocities.h"
+
+#include <stdbool.h>
+
+#include "algebra/cone.h"
+#include "algebra/differentiate.h"
+#include "algebra/node_list.h"
+#include "algebra/polynomials/rational.h"
+#include "algebra/simplify.h"
+#include "base/memory.h"
+
+enum { OF_VELOCITIES = 1u << VELOCITY };
+
+void substitute_in_observers(struct Model *model, const Node *replacements) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < switches->branch_count; i++)
+    substitute(graph, &switches->branches[i].indicator, 1, replacements, &switches->branches[i].indicator);
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++) {
+      Node *value = &switches->events[i].assignments[j].value;
+      substitute(graph, value, 1, replacements, value);
+    }
+  for (size_t i = 0; i < model->outputs.count; i++)
+    substitute(graph, &model->outputs.items[i].node, 1, replacements, &model->outputs.items[i].node);
+  for (size_t i = 0; i < model->states.count; i++)
+    substitute(graph, &model->states.items[i].rate, 1, replacements, &model->states.items[i].rate);
+}
+
+/* --- Velocities of coordinates --- */
+
+/* Collects all that observes the motion: indicators of branches, assignments of events, outputs, rates of states. */
+static struct NodeList observers_of(const struct Model *model) {
+  const struct Switches *switches = &model->switches;
+  struct NodeList observers = {0};
+  for (size_t i = 0; i < switches->branch_count; i++) append_node(&observers, switches->branches[i].indicator);
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++)
+      append_node(&observers, switches->events[i].assignments[j].value);
+  for (size_t i = 0; i < model->outputs.count; i++) append_node(&observers, model->outputs.items[i].node);
+  for (size_t i = 0; i < model->states.count; i++) append_node(&observers, model->states.items[i].rate);
+  return observers;
+}
+
+/*
+ * Gives each observed velocity a mode that is 1 while the velocity is free, and 0 at rest. Prescribed coordinates have
+ * one too: the runtime finds from these which others rest.
+ */
+static void append_resting_velocities(struct Model *model) {
+  struct Graph *graph = model->graph;
+  struct Switches *switches = &model->switches;
+  const struct NodeList observers = observers_of(model);
+  cone_collect(graph->cone, graph, observers.nodes, observers.count);
+  for (size_t i = 0; i < model->velocities.count; i++) {
+    const struct Variable *velocity = &model->velocities.items[i];
+    bool is_prescribed = model->prescribed.motions[i].is_prescribed;
+    if (!is_prescribed && !cone_has(graph->cone, velocity->node)) continue;
+    int index = (int)(switches->first + switches->mode_count++);
+    Node mode = graph_symbol(graph, MODE, index, format_text("%s.moves", velocity->name));
+    switches->resting = make_room(switches->resting, switches->resting_count, sizeof *switches->resting);
+    switches->resting[switches->resting_count++] = (struct RestingVelocity){mode, i, is_prescribed};
+  }
+}
+
+static void replace_velocities(struct Model *model) {
+  const struct Switches *switches = &model->switches;
+  struct Graph *graph = model->graph;
+  append_resting_velocities(model);
+  Node *replacements = own_symbols(graph);
+  for (size_t i = 0; i < switches->resting_count; i++) {
+    Node velocity = model->velocities.items[switches->resting[i].coordinate].node;
+    replacements[graph->vertices[velocity].left] = function(graph, GUARD, switches->resting[i].mode, velocity);
+  }
+  substitute_in_observers(model, replacements);
+}
+
+/* --- Other velocities, such as v - vBelt --- */
+
+/* If value is c f plus a term without velocities, sets *held to that term, the value at f = 0; else returns false. */
+static bool is_along(struct Graph *graph, Node value, Node f, Node *rest) {
+  const struct Gradient by = gradient_by_kinds(graph, f, OF_VELOCITIES),
+                        of = gradient_by_kinds(graph, value, OF_VELOCITIES);
+  bool are_same = of.count == by.count && of.count > 0;
+  for (size_t i = 0; i < of.count && are_same; i++) are_same = of.symbols[i] == by.symbols[i];
+  if (!are_same) return false;
+  Node ratio = divide(graph, of.values[0], by.values[0]);
+  *rest = simplify_fraction(graph, subtract(graph, value, multiply(graph, ratio, f)));
+  return !graph_depends_on(graph, *rest, VELOCITY);
+}
+
+/* A friction along another velocity than that of a coordinate may stick to a body that moves. */
+static void replace_in_indicators(struct Model *model) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    const struct Friction *friction = &switches->frictions[i];
+    for (size_t j = 0; j < switches->branch_count && !friction->is_given; j++) {
+      Node *indicator = &switches->branches[j].indicator, is_free = power_number(graph, friction->reported, 2.0), rest;
+      if (is_along(graph, *indicator, friction->velocity, &rest))
+        *indicator = choose_node(graph, is_free, *indicator, rest);
+    }
+  }
+}
+
+void replace_resting_velocities(struct Model *model) {
+  if (model->switches.friction_count + model->switches.contact_count == 0) return;
+  replace_in_indicators(model);
+  replace_velocities(model);
+}
