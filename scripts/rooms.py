@@ -69,6 +69,7 @@ RUNTIME = Layers(
     src/runtime/events
     src/runtime/contacts
     src/runtime/planes
+    src/runtime/rests
     src/runtime/timing
     src/runtime/stepping
     src/runtime/fmi

@@ -9,7 +9,7 @@
 
 #include "algebra/functions.h"
 #include "base/memory.h"
-#include "contacts/resting_velocities.h"
+#include "rests/resting_velocities.h"
 #include "events/resolution.h"
 #include "instance/event_laws.h"
 #include "instance/projection.h"

@@ -331,7 +331,7 @@ def test_reference(command, tmp_path):
     (["run", "near.fum"], "there is no file near.fum; did you mean 'Near.fmu'?"),
     (["run", fmu.archive("SimplePendulum"), "thetta=1"], "'thetta' is not a variable of SimplePendulum; did you mean 'theta'?"),
     (["run", fmu.archive("SimplePendulum"), "--output", "totalenergy"], "'totalenergy' is not a variable of SimplePendulum; did you mean 'totalEnergy'?"),
-    (["run", fmu.archive("InvertedPendulumCart"), "--input", "backk.csv"], "backk.csv: No such file or directory; did you mean 'back.csv'?"),
+    (["run", fmu.archive("InvertedPendulumCart"), "--input", "backk.csv"], "there is no file backk.csv; did you mean 'back.csv'?"),
     (["words", "restitutoin"], "the reference says nothing about 'restitutoin'; did you mean 'restitution'?"),
     (["new", "A", "--template", "robott"], "invalid choice: 'robott'; did you mean 'robot'?"),
     (["words", "qqq"], "the reference says nothing about 'qqq'"),

@@ -48,12 +48,13 @@ static bool has_prescribed_velocity(const struct Model *model, const struct Fric
 
 /* Adds a branch on the sign of the velocity. Not for frictions in a plane, whose speed the runtime monitors. */
 static void follow_sign(struct Model *model, const struct Friction *friction) {
+  const struct Variable *constraint = &model->constraints.items[friction->constraint];
   append_branch(&model->switches, (struct Branch){.mode = friction->mode,
                                                   .indicator = friction->velocity,
                                                   .is_of_friction = true,
                                                   .kinds = model->graph->vertices[friction->velocity].kinds,
-                                                  .function = "a friction",
-                                                  .line = model->constraints.items[friction->constraint].line});
+                                                  .function = format_text("the friction '%s'", constraint->name),
+                                                  .line = constraint->line});
 }
 
 void find_prescribed_frictions(struct Model *model) {

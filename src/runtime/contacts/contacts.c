@@ -55,6 +55,7 @@ static const double unresolved_share = 1e-6;
 /* Smaller speeds have no direction: their squares are next to the smallest numbers. */
 static const double least_speed = 1e-150;
 
+static const char penetrated[] = "a contact is penetrated";
 static const char no_impact[] = "an impact of a contact has no solution";
 
 /*
@@ -382,14 +383,25 @@ static bool lift(struct Resolution *resolution, bool *lifts) {
   return done;
 }
 
+/* Returns the fixed coordinate that the last projection at the start has moved most; coordinate_count for none. */
+static size_t find_moved_fixed(const struct Resolution *resolution) {
+  const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
+  size_t found = lagrangian.coordinate_count;
+  double most = largest_penetration;
+  for (size_t i = 0; i < lagrangian.coordinate_count && is_fixed != NULL; i++) {
+    double move = fabs(resolution->correction[i]) / scale_of(resolution->state, i);
+    if (!is_fixed[i] || !(move > most)) continue;
+    most = move;
+    found = i;
+  }
+  return found;
+}
+
 /* Undoes a projection at the start that has moved a fixed coordinate. True if it has. */
 static bool undo_move_of_fixed(struct Resolution *resolution) {
-  const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
-  bool moves = false;
-  for (size_t i = 0; i < lagrangian.coordinate_count && is_fixed != NULL; i++)
-    moves |= is_fixed[i] && fabs(resolution->correction[i]) > largest_penetration * scale_of(resolution->state, i);
-  for (size_t i = 0; i < lagrangian.coordinate_count && moves; i++) resolution->state[i] -= resolution->correction[i];
-  return moves;
+  if (find_moved_fixed(resolution) == lagrangian.coordinate_count) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) resolution->state[i] -= resolution->correction[i];
+  return true;
 }
 
 /* True if the penetration of a contact may come from rounded start values. */
@@ -478,6 +490,21 @@ static const char *check_values(const struct Resolution *resolution) {
   return NULL;
 }
 
+/* Logs a contact that is penetrated by less than a rounded start value, which is fixed. False for others. */
+static bool report_fixed_start(const struct Resolution *resolution, size_t contact) {
+  bool is_undone = resolution->occasion == AT_START && resolution->takes_part[contact] < 0.0;
+  size_t fixed = is_undone ? find_moved_fixed(resolution) : lagrangian.coordinate_count;
+  if (fixed == lagrangian.coordinate_count) return false;
+  double start = resolution->state[fixed];
+  log_message(resolution->instance, STATUS_ERROR,
+              "time %g: the contact '%s' is penetrated at the start: its gap is %g, and the start of '%s' is fixed at "
+              "%.12g; expected %.12g, or fixed=\"false\", with which it is moved by the gap",
+              resolution->time, resolution->switches->contacts[contact].name,
+              contact_value(resolution, contact, CONTACT_GAP), evaluate_name(VARIABLE_STATE, fixed), start,
+              start + resolution->correction[fixed]);
+  return true;
+}
+
 static const char *check_gaps(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   const char *problem = check_values(resolution);
@@ -487,6 +514,7 @@ static const char *check_gaps(const struct Resolution *resolution) {
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = contact_value(resolution, i, CONTACT_GAP);
     if (gap >= -allowed) continue;
+    if (report_fixed_start(resolution, i)) return penetrated;
     log_message(
         resolution->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
         "time %g: the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
@@ -498,7 +526,7 @@ static const char *check_gaps(const struct Resolution *resolution) {
         starts  ? "start values or parameters"
         : moved ? "values of <set>"
                 : "conditions and modes");
-    return "a contact is penetrated";
+    return penetrated;
   }
   return NULL;
 }

@@ -10,7 +10,7 @@
  * A prescribed velocity rests if it is 0, and its acceleration is 0 here and nearby. The error of the method may leave
  * it other than 0 where a drive stops.
  */
-#include "contacts/resting_velocities.h"
+#include "rests/resting_velocities.h"
 
 #include <math.h>
 #include <stdint.h>
