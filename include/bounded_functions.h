@@ -29,8 +29,8 @@ static inline double log_cosh(double u) {
 }
 
 /*
- * exp(u) in the argument of a function that is constant to rounding for large arguments, such as exp(-exp(u)). From
- * u = EXPONENT_CAP on it is constant, where it is beyond that range even with a factor of 1e-80.
+ * Returns exp(min(u, EXPONENT_CAP)). It serves as the argument of a function that is constant to rounding for large
+ * arguments, such as exp(-exp(u)). exp(200) = 7e86 is large enough even with a factor of 1e-80.
  */
 #define EXPONENT_CAP 200.0
 static inline double capped_exp(double u) {

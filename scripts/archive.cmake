@@ -1,4 +1,4 @@
-# For scripts that pack the folder ${content} into an archive with the program ${ZIP}.
+# Packs the folder ${content} into an archive with the program ${ZIP}. The including script sets both.
 
 function(run)
   execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${content} RESULT_VARIABLE status)

@@ -3,7 +3,7 @@ Print the coefficients of Radau IIA with 3, 5 and 7 stages as C: python scripts/
 
 The nodes c are the zeros of d^(s-1)/dx^(s-1) of x^(s-1) (x - 1)^s. The matrix A integrates the Lagrange polynomials of the nodes from 0 to c_i.
 The eigenvalues and eigenvectors of A^-1 decouple the linear systems of Newton's method. The embedded formula gives the error estimate.
-All is computed with 60 digits (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and IV.8).
+All numbers are computed with 60 digits (E. Hairer, G. Wanner: Solving Ordinary Differential Equations II, sections IV.5 and IV.8).
 """
 
 import mpmath as mp

@@ -59,7 +59,7 @@ def page_of(anchor, sections):
 
 
 def relink(text, old, new, sections):
-    """Return a page that has moved from old to new, with links that lead where they led; those to the reference lead to its parts."""
+    """Return a page that has moved from old to new, with links to the same targets as before; links to the reference lead to its parts."""
 
     def link(match):
         path, _, anchor = match.group(1).partition("#")

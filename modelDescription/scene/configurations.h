@@ -20,7 +20,7 @@ struct Configurations configurations_of(const struct Model *model, const struct 
 
 /*
  * Returns the values of the nodes at the start configuration plus offsets (NULL: none), projected onto the constraints
- * by the shortest way; indexed by node. Returns NULL if the projection fails.
+ * by the least change of the coordinates; indexed by node. Returns NULL if the projection fails.
  */
 double *values_at(const struct Configurations *configurations, const double *offsets);
 

@@ -1,7 +1,7 @@
 // Sliders of parameters, inputs and start values.
 "use strict";
 
-// Returns the size of an input in this unit, from the weights of masses and the longest length among the parameters; 1 where they say nothing.
+// Returns the size of an input in this unit, from the weights of masses and the longest length among the parameters; 1 where these are missing.
 function naturalSize(unit) {
   const startsIn = (wanted) => description.variables.filter(({ role, unit }) => role === "parameter" && unit === wanted).map(({ start }) => Math.abs(start));
   const weight = 10 * startsIn("kg").reduce((sum, mass) => sum + mass, 0), length = Math.max(...startsIn("m"), 0) || 1;
@@ -22,7 +22,7 @@ class Control {
   // variable: name, unit, description, start, min, max, type; onChange(value) is called for each new value.
   constructor(variable, onChange) {
     this.variable = variable;
-    this.value = this.idle = variable.start; // idle: the value of an input without keys
+    this.value = this.idle = variable.start; // idle: the value of an input while no key is pressed
     [this.low, this.high, this.isLogarithmic] = rangeOf(variable);
     this.element = document.createElement("div");
     this.element.className = "control";

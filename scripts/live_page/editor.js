@@ -1,7 +1,7 @@
 // Edits a system beside the page in which it runs. Each pause in typing derives it; the button Run runs it.
 "use strict";
 
-const PAUSE = 300; // ms without a key after which the text is derived
+const PAUSE = 300; // ms from the last key press until the system is derived
 const TIMEOUT = 15; // s after which a derivation is aborted
 const template = `<!doctype html>\n${document.documentElement.outerHTML}`; // the unchanged page, a template for saved pages
 const $ = (id) => document.getElementById(id);

@@ -1,4 +1,4 @@
-// Finds an equilibrium of the FMU, and its linearization there; see linearization.py and resting.py of the package. Runs in the worker.
+// Finds an equilibrium of the FMU, and its linearization there; see linearization.py and equilibria.py of the package. Runs in the worker.
 "use strict";
 
 const STEP = 2 ** -16; // of the differences that give the derivative of the projection, relative

@@ -10,13 +10,13 @@ GREEK = "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi 
 FUNCTIONS = {"sin", "cos", "tan", "sinh", "cosh", "tanh", "log", "exp", "min", "max"}
 LINE = 75  # characters of a line of an equation, about
 
-# What texts contain and LaTeX reads in its own way, or not at all.
+# Characters of texts that have a special meaning in LaTeX, or none.
 SPECIAL = {"\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "_": r"\_", "^": r"\^{}", "&": r"\&", "%": r"\%", "#": r"\#", "$": r"\$", "~": r"\~{}", "<": "$<$", ">": "$>$",
            "λ": r"$\lambda$", "ω": r"$\omega$", "″": "$''$", "′": "$'$", "ᵀ": r"$^{T}$", "°": r"$^{\circ}$"}  # fmt: skip
 
 
 def plain(text):
-    """Return the text with what LaTeX would not print as it is."""
+    """Return the text with the special characters of LaTeX escaped."""
     return "".join(SPECIAL.get(letter, letter if letter.isascii() else "?") for letter in text)
 
 
@@ -159,7 +159,7 @@ def formula(text, multipliers=()):
 
 
 def length(part):
-    """Return about how many letters of a formula show."""
+    """Return about how many letters of a formula are visible."""
     return len(re.sub(r"\\(left|right|frac|mathrm|operatorname|dot|,)|[{}\\ ]", "", part))
 
 

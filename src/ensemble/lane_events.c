@@ -85,7 +85,7 @@ static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feel
 }
 
 /*
- * Returns the lanes in which a function stays positive, from its values f at the Chebyshev nodes; see judge_signs() of
+ * Returns the lanes in which a function stays positive, from its values f at the Chebyshev nodes; see search_judge() of
  * events/search.c. With the interpolant sum of c_k T_k and |T_k| <= 1, it is positive if c_0 exceeds the sum of the
  * other |c_k| and the tail, which bounds the interpolation error. It is also positive between nonnegative ends, if it
  * is monotone or concave by the same bound on a derivative.

@@ -9,7 +9,7 @@
 #include "lane_steps.h"
 #include "single/single_run.h"
 
-/* Events of the runs in lanes. run handles the lanes with events, one after another. */
+/* Events of the runs in lanes. `run` handles the lanes that have events, one after another. */
 struct LaneEvents {
   struct SingleRun *run;
   struct LaneSteps *steps;
@@ -27,14 +27,14 @@ void lane_events_destroy(struct LaneEvents *events);
 /* True if the system has events or constraints. */
 bool lane_events_are_needed(void);
 
-/* Resolves the start: from start values to the first state and modes. Returns the lanes in which that fails. */
+/* Finds the first state and modes from the start values. Returns the lanes in which that fails. */
 Mask lane_events_start(struct LaneEvents *events, Mask lanes);
 
 /* Finds the first event in each step. Returns the lanes in which that fails. */
 Mask lane_events_find(struct LaneEvents *events, Mask active);
 
 /*
- * Continues after the end of the steps: with the state and modes after an event, projected onto the constraints.
+ * Prepares the next steps: sets the state and modes after events, and projects the state onto the constraints.
  * Returns the lanes in which that fails.
  */
 Mask lane_events_continue(struct LaneEvents *events, Mask active);
@@ -42,7 +42,7 @@ Mask lane_events_continue(struct LaneEvents *events, Mask active);
 /* Computes accelerations and forces of a constrained system at steps->state. Returns the lanes in which that fails. */
 Mask lane_events_accelerations(struct LaneEvents *events, Lanes time);
 
-/* Projects steps->state at a time of each lane onto its closed constraints. Returns the lanes in which that fails. */
+/* Projects steps->state at each lane's time onto its closed constraints. Returns the lanes in which that fails. */
 Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes);
 
 /* Returns the lanes in which the checks at the end of a run fail for steps->state. */

@@ -22,7 +22,7 @@ LANES_INLINE Lanes series_middle(int k, const Lanes *a, const Lanes *b) {
   return series_dot(k - 1, a + 1, b + k - 1);
 }
 
-/* The same for all products of an order. */
+/* Computes the middle terms m[i] of all products of an order. */
 #define SERIES_MIDDLES(PRODUCTS) PRODUCTS(SERIES_MIDDLE)
 #define SERIES_MIDDLE(i, a, from, b) m[i] = series_dot(k - 1, (a) + (from), (b) + k - 1);
 
@@ -47,7 +47,7 @@ LANES_INLINE Lanes series_product(int k, const Lanes *a, const Lanes *b) {
   return series_product_around(series_middle(k, a, b), k, a, b);
 }
 
-/* (a b)_k without its first term a_0 b_k */
+/* Returns (a b)_k without its first term a_0 b_k. */
 LANES_INLINE Lanes series_rest_around(Lanes middle, int k, const Lanes *a, const Lanes *b) {
   return middle + a[k] * b[0];
 }
@@ -56,7 +56,7 @@ LANES_INLINE Lanes series_rest(int k, const Lanes *a, const Lanes *b) {
   return series_rest_around(series_middle(k, a, b), k, a, b);
 }
 
-/* (a a)_k */
+/* Returns (a a)_k. */
 LANES_INLINE Lanes series_square_around(Lanes middle, int k, const Lanes *a) {
   return middle + 2.0 * (a[0] * a[k]);
 }
@@ -75,7 +75,7 @@ LANES_INLINE Lanes lane_series_quotient(Lanes middle, int k, Lanes top, Lanes in
   lane_series_quotient(middle, k, LANES_OF(top), LANES_OF(inverse), b, c)
 #define series_quotient(k, top, inverse, b, c) series_quotient_around(series_middle(k, b, c), k, top, inverse, b, c)
 
-/* (sqrt a)_k; 0 if a vanishes at all times */
+/* Returns (sqrt a)_k; 0 if a vanishes at all times. */
 LANES_INLINE Lanes series_root_around(Lanes middle, int k, const Lanes *a, const Lanes *c) {
   Lanes root = (a[k] - middle) / (2.0 * c[0]);
   return lanes_select((c[0] == 0.0) & (c[k - 1] == 0.0) & (a[k] == 0.0), (Lanes){0}, root);
@@ -85,7 +85,7 @@ LANES_INLINE Lanes series_root(int k, const Lanes *a, const Lanes *c) {
   return series_root_around(series_middle(k, c, c), k, a, c);
 }
 
-/* c_k for c' = a' b; rate is the series of a' */
+/* Returns c_k for c' = a' b; rate is the series of a'. */
 LANES_INLINE Lanes series_integral_around(Lanes middle, int k, const Lanes *rate, const Lanes *b) {
   return (middle + rate[k - 1] * b[0]) * reciprocal[k];
 }
@@ -94,7 +94,7 @@ LANES_INLINE Lanes series_integral(int k, const Lanes *rate, const Lanes *b) {
   return series_integral_around(series_dot(k - 1, rate, b + k - 1), k, rate, b);
 }
 
-/* c_k for c' = a' / b; top is a_k, possibly a constant */
+/* Returns c_k for c' = a' / b; top is a_k, possibly a constant. */
 LANES_INLINE Lanes lane_series_ratio_integral(int k, Lanes top, const Lanes *b, const Lanes *c) {
   Lanes sum = {0};
   for (int j = 1; j < k; j++) sum += (double)j * c[j] * b[k - j];
@@ -109,7 +109,7 @@ LANES_INLINE Lanes series_sign(int k, const Lanes *a) {
   return WHERE(first > 0.0, 1.0, WHERE(first < 0.0, -1.0, 0.0));
 }
 
-/* |a|_k just after t = 0 */
+/* Returns |a|_k just after t = 0. */
 LANES_INLINE Lanes series_absolute(int k, const Lanes *a) {
   return series_sign(k, a) * a[k];
 }
@@ -126,7 +126,7 @@ LANES_INLINE Lanes series_angle(int k, const Lanes *y, const Lanes *x, const Lan
   return series_ratio_integral(k, series_area(k, y, x), b, c);
 }
 
-/* (a^n)_k for any number n, lane by lane */
+/* Returns (a^n)_k for any number n, lane by lane. */
 Lanes lane_series_power(int k, Lanes n, const Lanes *a, const Lanes *c);
 #define series_power(k, n, a, c) lane_series_power(k, LANES_OF(n), a, c)
 

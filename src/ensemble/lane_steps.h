@@ -44,7 +44,10 @@ void lane_steps_destroy(struct LaneSteps *steps);
  */
 Mask lane_steps_start(struct LaneSteps *steps);
 
-/* Computes the series about the origin and their reach; 0 in inactive lanes. Returns the lanes that need the FMU. */
+/*
+ * Computes the series about the origin and their interval of validity; 0 in inactive lanes. Returns the lanes that need
+ * the FMU.
+ */
 Mask lane_steps_expand(struct LaneSteps *steps, Mask active);
 
 /* Moves the origin to the end of the step. Returns the lanes that stagnate. */

@@ -21,7 +21,7 @@ typedef uint64_t Bits __attribute__((vector_size(LANES * sizeof(uint64_t))));
 /* A number in all lanes; vectors are unchanged. */
 #define LANES_OF(number) ((number) - (Lanes){0})
 
-/* The same in a static initializer. */
+/* A number in all lanes, for a static initializer. */
 #if LANES == 8
 #define LANES_CONSTANT(number)                                                                                         \
   { number, number, number, number, number, number, number, number }

@@ -9,7 +9,7 @@
 /* The runtime's sources are compiled with this name in place of `lagrangian`. */
 extern const struct Lagrangian *system_in_memory;
 
-/* The checks of a step limit. */
+/* The conditions that limit a step. */
 struct Limits {
   struct LimitCheck *checks;
   size_t count;
@@ -18,14 +18,13 @@ struct Limits {
 /* The tables of a system, and their workspace. */
 struct Interpreter {
   struct InstructionTables tables;
-  /* table of each function with one instruction list; of series: for the coefficients 0 */
+  /* the instruction table of each function; of a series: the table for the coefficients of order 0 */
   const uint32_t *code[FUNCTION_COUNT];
-  const uint32_t *order[FUNCTION_COUNT];  /* of series: table for the coefficients k */
-  struct IrTables results, results_along; /* from encode_all() */
-  double *values;                         /* workspace for the targets of a table of results */
-  size_t coordinate_count,
-      parameter_constants_count; /* counts; parameter_constants_count excludes the local variables of prepare() */
-  size_t mass_row;               /* see struct SeriesProgram */
+  const uint32_t *order[FUNCTION_COUNT];              /* of a series: the table for the coefficients of order k */
+  struct IrTables results, results_along;             /* from encode_all() */
+  double *values;                                     /* workspace for the targets of a table of results */
+  size_t coordinate_count, parameter_constants_count; /* the latter without the local variables of prepare() */
+  size_t mass_row;                                    /* see struct SeriesProgram */
   struct Limits limits, watched_limits;
 };
 

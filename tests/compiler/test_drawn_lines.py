@@ -150,7 +150,7 @@ def without_lines(text):
 
 
 def test_equations_are_those_without_lines(tmp_path):
-    """The C of every system is the same to the last character, but for the identifier of its description, and the expressions do not cost."""
+    """The C of every system is the same with and without lines, except for the identifier of its description. Expressions of lines cost nothing."""
     for name in SYSTEMS:
         source = (ROOT / "fmu" / name / "system.xml").read_text(encoding="utf-8")
         (tmp_path / name).mkdir()
@@ -187,7 +187,7 @@ def test_messages(tmp_path, line, message):
 
 
 def test_a_formula_may_not_be_endless(tmp_path):
-    """An end by an expression that grows with each link asks for a name."""
+    """For an end whose expression grows with each link, the message asks for a name."""
     chain = '<define name="p" unit="m">l*sin(theta)</define>' + "".join(
         f'<define name="p{i}" unit="m">{"p" if i == 0 else f"p{i - 1}"}*cos({"p" if i == 0 else f"p{i - 1}"}/l)</define>' for i in range(14)
     )

@@ -1,4 +1,4 @@
-/* Products of the same factors: which are shared, which are not, and that values stay. */
+/* Common factors of products: which ones are shared, which are not, and that values do not change. */
 #include "expressions.h"
 #include "algebra/cone.h"
 #include "algebra/polynomials/shared_products.h"
@@ -14,7 +14,7 @@ static size_t operations(const struct Expressions *e, const Node *nodes) {
   return operations;
 }
 
-/* Three expressions, of which the first `leading` ones decide what is shared; and the operations before and after. */
+/* Each case: three expressions, of which the first `leading` ones decide what is shared; operations before, after. */
 static void test_operations(void **state) {
   (void)state;
   static const struct {
@@ -28,7 +28,7 @@ static void test_operations(void **state) {
       {{"x^3*y", "x^3*z", "x*y*z"}, COUNT, 5, 5},                     /* powers stay whole */
       {{"x*y + 1", "y*z + 2", "x*z + 3"}, COUNT, 6, 6},               /* no pair occurs twice */
       {{"sqrt(x*y*z)", "x*y + 1", "exp(x*z*y)"}, COUNT, 7, 7},        /* operands of functions stay */
-      {{"x*z*y", "cos(z)*x*y", "exp(z)*(y*x)"}, 2, 8, 6},             /* the third takes x y from the others */
+      {{"x*z*y", "cos(z)*x*y", "exp(z)*(y*x)"}, 2, 8, 6},             /* the third reuses x y of the others */
       {{"x*y*z", "sin(z)*y", "cos(z)*y*z"}, 2, 7, 7},                 /* the third does not decide: y z is not shared */
   };
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {

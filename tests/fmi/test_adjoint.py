@@ -49,7 +49,7 @@ def model(name):
 @pytest.mark.parametrize("name", ["Mixed", *HELD])
 def test_adjoint_derivatives_are_transposed_directional_ones(name):
     """
-    Adjoint derivatives of a sum of all unknowns agree by each known, for small blocks of M, a block factored at run time, a closed loop,
+    Adjoint derivatives of a sum of all unknowns agree with directional ones for each known: for small blocks of M, a block factored at run time, a closed loop,
     and a tree of joints.
     """
     instance, unknowns, knowns = model(name)

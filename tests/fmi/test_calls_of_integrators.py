@@ -76,7 +76,7 @@ def test_a_time_before_the_last_step(open_fmu):
 @pytest.mark.parametrize("kind", [FMU2Model, FMU3Model])
 def test_times_past_the_stop_time(kind):
     """
-    Nobody computes past stopTime (FMI 2.0.4, section 2.1.6; FMI 3.0.2, section 2.3.2): no step is completed and no event handled there. An
+    Nothing is computed past stopTime (FMI 2.0.4, section 2.1.6; FMI 3.0.2, section 2.3.2): no step is completed and no event handled there. An
     integrator such as CVode may still evaluate beyond it, and interpolate back.
     """
     module = fmu if kind is FMU2Model else fmi3

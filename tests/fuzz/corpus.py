@@ -16,7 +16,7 @@ FUNCTIONS, NAMES, ELEMENTS = (re.findall(rf"^{kind} (\w+)$", WORDS, re.M) for ki
 
 
 def systems():
-    """Yield names and texts; numbers of repetitions are reduced, and a <linearization> finds its system."""
+    """Yield names and texts, with few repetitions in each <for>, and with the full path of the system in each <linearization>."""
     for path in sorted([*(ROOT / "fmu").glob("*/system.xml"), *(ROOT / "tests" / "systems").glob("*/system.xml")]):
         text = re.sub(r'(<constant name="\w+" value=")\d+"', r'\g<1>3"', path.read_text())
         yield path.parent.name, text.replace('of="..', f'of="{ROOT / "fmu"}')

@@ -90,7 +90,7 @@ def test_units_of_modes_and_functions(tmp_path, content, message):
 
 
 def test_a_forgotten_unit_in_a_for_is_warned_of_once(tmp_path):
-    """Once for each line of a <for>, and for each variable outside of it."""
+    """The warning appears once for each line of a <for>, and once for each variable outside of it."""
     (tmp_path / "system.xml").write_text("""<system name="F"><input name="u" unit="1"/><parameter name="T" start="1" unit="s"/><state name="x[0]" rate="(u - x[0])/T"/>
 <for index="i" from="1" to="4"><state name="x[i]" rate="(x[i-1] - x[i])/T"/>
 <state name="y[i]" rate="(x[i-1] - y[i])/T"/></for></system>""")

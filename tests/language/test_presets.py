@@ -1,4 +1,4 @@
-"""<preset>: the annotations of both descriptions, messages, and that nothing else changes."""
+"""<preset>: the annotations of both descriptions, messages, and no other change of the FMU."""
 
 from xml.etree import ElementTree
 

@@ -15,7 +15,7 @@ from motions import lagrange_fmu  # noqa: F401
 N = 20
 START = dict(L=2.0, rhoA=0.1, EA=500.0, EI=1e-3, b=0.01, kEnd=0.0, xEnd=1.0, yEnd=0.0, g=9.81)
 NODES = range(N + 1)
-# Coordinates of one axis in the order of the elements: place and slope of each node. The first place is the pin's.
+# Coordinates of one axis in the order of the elements: position and slope of each node. The first position is the pin's.
 ORDER = {axis: [name for k in NODES for name in (f"{axis}[{k}]", f"slope{axis.upper()}[{k}]")][1:] for axis in "xy"}
 RATES = {axis: [name for k in NODES for name in (f"v{axis}[{k}]", f"w{axis}[{k}]")][1:] for axis in "xy"}
 GAUSS, WEIGHTS = leggauss(8)
@@ -66,7 +66,7 @@ def test_energy_is_constant(open_fmu):
 
 def catenary(p, s):
     """
-    Places and tension at the points s of a cable without bending, in equilibrium. The pull along it is n = (H, V + rhoA g s), and
+    Positions and tension at the points s of a cable without bending, in equilibrium. The pull along it is n = (H, V + rhoA g s), and
     EA (l^2 - 1)/2 l = |n| gives the stretch l (Green's strain); r' = l n/|n| is integrated from the pin by Gauss and Legendre.
     """
 

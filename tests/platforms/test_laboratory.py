@@ -89,7 +89,7 @@ def method_of(name):
 
 @pytest.mark.parametrize("name", [name if name in DAILY else pytest.param(name, marks=pytest.mark.release) for name in ALL])
 def test_it_is_the_fmu(name, tmp_path):
-    """The result equals that of the compiled FMU of the tree; the laboratory interprets the tables instead."""
+    """The laboratory, which interprets instruction tables, gives the result of the compiled FMU."""
     laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")
     if method_of(name) in ("erk", "bdf"):
         assert not laboratory.derive(f"{name}/system.xml")
@@ -122,7 +122,7 @@ def test_mistakes(tmp_path):
 
 
 def test_pulled(tmp_path):
-    """The module has the inputs of lagc --pull only if requested."""
+    """The system has the inputs of lagc --pull only if they are requested."""
     for is_pulled in (False, True):
         laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")
         assert laboratory.derive("DoublePendulum/system.xml", is_pulled)
@@ -213,7 +213,7 @@ def test_a_system_is_changed_in_the_page(browser, tmp_path):
         assert run_in(page, 3.0)["x"] == pytest.approx(0.3 * np.cos(6.0), abs=1e-8)
 
 
-CONTEXTS = [  # the text with the caret at "|", what is offered, in order, and what it becomes with the first
+CONTEXTS = [  # the text, with "|" at the caret; the completions offered, in order; the line after accepting the first
     ('<system name="A">\n  <poten|\n</system>', ["potential"], "  <potential>|</potential>"),
     ('<system name="A">\n  <coordinate na|\n</system>', ["name"], '  <coordinate name="|"'),
     ('<system name="A">\n  <coordinate v| name="x"/>\n</system>', ["velocity", "velocityStart", "velocityNominal", "velocityDescription", "velocityDisplayUnit"], '  <coordinate velocity="|" name="x"/>'),
@@ -251,7 +251,7 @@ def test_words_that_may_stand_at_the_caret(browser, tmp_path):
 
 
 def test_colors_and_the_button_that_inserts(browser, tmp_path):
-    """The colors hold the same text, of which each token has its kind; the button begins an element, the keys choose one."""
+    """The colored copy has the same text, with a kind for each token. The button begins an element, and keys choose one."""
     with editor(browser, write_page(tmp_path, "SimplePendulum")) as page:
         text = '<system name="A"><!-- a < b -->\n  <kinetic>1 & 2</kinetic>\n  <broken at="1\n'
         page.locator("#source").fill(text)

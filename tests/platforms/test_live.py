@@ -401,7 +401,7 @@ def test_the_view_in_space_is_filled(browser, page_file):
 
 
 def test_short_experiments_and_large_numbers(browser, page_file):
-    """An experiment of 1 s is shown for 5 s; fields show numbers that are longer than they are as powers of ten."""
+    """An experiment of 1 s is shown for 5 s; fields show numbers that do not fit in them as powers of ten."""
     with opened(browser, page_file("WormGear")) as page:
         assert page.inner_text("#speedShown") == "× 0.2"
         page.get_by_role("spinbutton", name="load", exact=True).fill("123000000")

@@ -1,4 +1,4 @@
-"""Tasks in live pages: measured from samples, and ended by what is no input."""
+"""Tasks in live pages: measured from samples, and ended when anything but an input is changed."""
 
 import re
 

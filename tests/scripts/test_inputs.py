@@ -52,7 +52,7 @@ def moved(times, forces):
 
 @pytest.mark.parametrize("version", [0, 1])
 def test_linear_between_the_rows_of_a_table(version):
-    """The rows of the table are no communication points; a force held over each step would be 2 % off."""
+    """The rows of the table are not communication points; a force held constant over each step would be 2 % off."""
     times, forces = [0.0, 0.3, 0.4, 1.0], [0.0, 1.0, -1.0, 2.0]
     result = simulate(archives("Pushed")[version], {}, input={"time": times, "F": forces}, **EVEN).outputs
     assert result["time"].tolist() == [0, 0.25, 0.5, 0.75, 1]
@@ -76,7 +76,7 @@ def test_constant_between_rows(version):
     result = simulate(archives("Pushed")[version], {}, input={"time": [0, 0.3, 0.5], "F": [1, 2, 5]}, hold=True, **EVEN).outputs
     np.testing.assert_allclose(result["v"][-1], 0.3 + 0.2 * 2 + 0.5 * 5, rtol=1e-13)
     held = simulate(archives("Pushed")[version], {}, input=lambda t: t, hold=True, record_events=False, **EVEN).outputs
-    np.testing.assert_allclose(held["v"], [0, 0, 0.0625, 0.1875, 0.375], atol=1e-14)  # of a function, over each step
+    np.testing.assert_allclose(held["v"], [0, 0, 0.0625, 0.1875, 0.375], atol=1e-14)  # the function is held over each step
 
 
 def swings(t, force_rate):
@@ -86,7 +86,10 @@ def swings(t, force_rate):
 
 @pytest.mark.parametrize("version, asks, error", [(0, True, 1e-11), (1, True, 1e-11), (1, False, 2e-6)])
 def test_several_inputs_and_kinds(version, asks, error, monkeypatch):
-    """Arrays, numbers, functions and records; where FMI 3.0 asks for none within steps, inputs change twice in each step of 0.5 rad, with an error of fourth order."""
+    """
+    Inputs as arrays, numbers, functions and records. If the FMU asks for no inputs within steps (FMI 3.0), they change twice in each step of
+    0.5 rad; the error is of fourth order.
+    """
     if not asks:
         monkeypatch.setattr(Supplier, "__call__", lambda *words: None)
     archive = archives("Sprung")[version]

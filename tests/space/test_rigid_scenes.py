@@ -27,7 +27,7 @@ PLATE = """<coordinate name="h" velocity="vh" unit="m"/><coordinate name="p" vel
 TEXTS = {
     "ThrownBox": FLOOR,
     "BoxOnPlate": PLATE + FLOOR.replace('name="floor"', 'name="floor" in="plate"'),
-    # The distance of ball and box contains a square root, so that the search for events bounds its intervals.
+    # The distance of ball and box contains a square root, which makes the search for events shorten its intervals.
     "BoxBesideBall": FLOOR + free("b", (0.05, 0, 0.6), 'type="sphere" radius="0.1"') + CONTACT.format("far", "bShape", "aShape"),
 }
 

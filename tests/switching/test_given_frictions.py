@@ -1,4 +1,4 @@
-"""Friction along velocities prescribed by drives and constraints, which dwell and start; and a belt at rest that starts under a box."""
+"""Friction along velocities that drives and constraints prescribe, with dwells and restarts; a belt that starts to move under a box."""
 
 import fmpy
 import numpy as np

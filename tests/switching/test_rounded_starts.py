@@ -1,4 +1,4 @@
-"""Start values with few digits: penetrated contacts are separated as constraints are satisfied, with a message."""
+"""Start values with few digits: a projection opens penetrating contacts, as it satisfies constraints, with a message."""
 
 import math
 

@@ -6,7 +6,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/* Bytes of a formula, and depth of recursion, from which on the text is cut off. */
+/* Longest formula, in bytes, and deepest recursion; beyond them the text is cut off. */
 enum { LENGTH_LIMIT = 20000, DEPTH_LIMIT = 2000 };
 
 /* Context of an expression: a sum in a product, and a product in a power, need parentheses. */

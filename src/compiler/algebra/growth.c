@@ -161,7 +161,7 @@ static Node expand_term(struct Graph *graph, Node term) {
   return count < 0 ? term : result;
 }
 
-/* Does the same in all terms of a sum. */
+/* Multiplies out powers of sums in all terms of a sum. */
 static Node expand(struct Graph *graph, Node sum) {
   Node terms[TERM_LIMIT], result = ZERO;
   int count = terms_of(graph, sum, terms, TERM_LIMIT);
@@ -252,7 +252,7 @@ static int cap_factor(struct Graph *graph, struct Factor factor, Node *result) {
   return 1;
 }
 
-/* Does the same for a term. */
+/* Replaces the growing exponentials of a term by capped ones; returns as cap_factor(). */
 static int cap_term(struct Graph *graph, Node term, Node *result) {
   Node base;
   struct Factor factors[FACTOR_LIMIT];
@@ -267,7 +267,7 @@ static int cap_term(struct Graph *graph, Node term, Node *result) {
   return found;
 }
 
-/* Two that grow may cancel each other, so that their arguments are not large. */
+/* Two exponentials that grow may cancel each other, so that the argument is not large: then nothing is rewritten. */
 bool bounded_argument(struct Graph *graph, Node argument, Node *result) {
   Node terms[TERM_LIMIT];
   int count = terms_of(graph, argument, terms, TERM_LIMIT), found = 0;

@@ -9,5 +9,5 @@
  */
 const char *kink_of(const struct Graph *graph, const Node *nodes, size_t count);
 
-/* Returns that of a kink that no series shows, as that of asin(sin(x)). */
+/* Returns the name of a kink that no series shows, such as that of asin(sin(x)); NULL for none. */
 const char *kink_without_series_of(const struct Graph *graph, const Node *nodes, size_t count);

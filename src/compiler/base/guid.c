@@ -3,7 +3,7 @@
 #include <stdint.h>
 #include <stdio.h>
 
-/* Two 64-bit FNV-1a hashes from different bases; the second one also mixes its bits. */
+/* Computes two 64-bit FNV-1a hashes from different bases; the second one also mixes its bits. */
 void guid_of(const char *const *texts, size_t count, char guid[GUID_LENGTH]) {
   uint64_t a = 0xcbf29ce484222325u, b = 0x6c62272e07bb0142u;
   for (size_t i = 0; i < count; i++) {

@@ -10,13 +10,13 @@
 #include "display/factors.h"
 #include "display/natural_order.h"
 
-/* Characters of a text inside of others from which on the whole keeps the form of formula.h. */
+/* Longest text inside of others, in characters; with a longer one the whole keeps the form of formula.h. */
 enum { LENGTH_LIMIT = 4000 };
 
-/* Functions inside of others from which on the whole keeps that form, which bounds the stack. */
+/* Deepest nesting of functions; beyond it the whole keeps that form. It bounds the stack. */
 enum { DEPTH_LIMIT = 60 };
 
-/* Characters of a sum that is well read as a factor, such as 1 - cos(theta). */
+/* Longest sum, in characters, that is easy to read as a factor, such as 1 - cos(theta). */
 enum { SHORT_SUM = 24 };
 
 /*

@@ -22,7 +22,7 @@ static Node *generalized_forces(const struct Model *model) {
   return force;
 }
 
-/* Copies the elements of a block from an array over all rows; with back, in the other direction. */
+/* Copies the elements of a block from an array over all rows; if back, copies them to that array. */
 static void move_block(const struct InertiaBlock *block, Node *all, Node *of_block, bool back) {
   for (size_t i = 0; i < block->count; i++) {
     if (back) all[block->coordinates[i]] = of_block[i];
@@ -36,9 +36,9 @@ static bool is_prescribed(const struct Model *model, size_t row) {
 
 /*
  * Shortens the inertial forces, block by block. Multiplied out, those in curvilinear coordinates lose terms that cancel
- * each other, but others grow. left: inertial forces of the coordinates, and ZERO for constraints, at zero
- * accelerations and with their symbols; each is replaced only by a shorter form. Forces and potentials stay as written:
- * k*(r - l0) has smaller rounding errors than k*r - k*l0.
+ * each other, but others grow. left: inertial forces of the coordinates, and ZERO for constraints; left[0] at zero
+ * accelerations, left[1] with their symbols. Each is replaced only by a shorter form. Forces and potentials stay as
+ * written: k*(r - l0) has smaller rounding errors than k*r - k*l0.
  */
 static void shorten_inertial_forces(const struct Model *model, const struct Inertia *inertia, Node *left[2]) {
   struct Graph *graph = model->graph;
@@ -75,7 +75,7 @@ static void prescribe_motion(const struct Model *model, struct Equations *equati
   equations->residual[i] = subtract(graph, model->unknowns.accelerations[i], prescribed_motion->acceleration);
 }
 
-/* Removes the terms with constraint forces, which the matrix contains. */
+/* Removes the terms with constraint forces from a right side: the matrix K contains them. */
 static Node without_forces(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   if (model->switches.friction_count == 0 || !graph_depends_on(graph, node, ACCELERATION)) return node;

@@ -46,7 +46,7 @@ static bool has_prescribed_velocity(const struct Model *model, const struct Fric
   return all;
 }
 
-/* Adds a branch on the sign of the velocity. Not for frictions in a plane, whose speed the runtime monitors. */
+/* Adds a branch on the sign of the velocity, unless the friction is in a plane: the runtime monitors its speed. */
 static void follow_sign(struct Model *model, const struct Friction *friction) {
   const struct Variable *constraint = &model->constraints.items[friction->constraint];
   append_branch(&model->switches, (struct Branch){.mode = friction->mode,

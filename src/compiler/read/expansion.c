@@ -24,8 +24,8 @@ enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEM
 static const double index_limit = 1e9;
 
 /*
- * States of a <for>, stored as addresses in its field _private: refused has an error, backwards always ran from a
- * larger to a smaller number, repeated ran at least once.
+ * States of a <for>, stored as addresses in its field _private. rejected: it has an error. backwards: it always ran
+ * from a larger to a smaller number. repeated: it ran at least once.
  */
 static char rejected, backwards, repeated;
 

@@ -17,7 +17,7 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again);
  */
 const char *contact_forces_report_crushed(struct Resolution *resolution, size_t contact);
 
-/* Logs a contact that closes and whose gap no force changes. */
+/* Logs a contact that closes although no force changes its gap. */
 void contact_forces_report_fixed(const struct Resolution *resolution, size_t contact);
 
 /* Logs a sliding contact that friction jams at the end of the motion; false if there is none. */

@@ -41,7 +41,7 @@ bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double 
   double time_resolution = DBL_EPSILON * fmax(fabs(resolution->time), fabs(resolution->time - start));
   if (rate <= resolution->error_bound[gap + CONTACT_RATE] || 2.0 * rate <= shortest_flight * time_resolution * fall)
     return true;
-  /* Rounding, and even more an importer, leaves the gap slightly negative: a flight that ends there has no zero. */
+  /* Rounding, or more so an importer, leaves the gap slightly negative. A flight that ends below 0 crosses no zero. */
   double depth = resolution->occasion == IN_EXCHANGE ? 10.0 : 1.0;
   double lost =
       fmax(4.0 * resolution_error_bound(resolution, gap, gap + CONTACT_RATE), -depth * resolution->value[gap]);

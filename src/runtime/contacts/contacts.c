@@ -52,7 +52,7 @@ static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
 /* Relative to the largest rate of the gap in this event: impulses by iteration may leave smaller closing rates. */
 static const double unresolved_share = 1e-6;
 
-/* Smaller speeds have no direction: their squares are next to the smallest numbers. */
+/* Smaller speeds have no direction: their squares are close to underflow. */
 static const double least_speed = 1e-150;
 
 static const char penetrated[] = "a contact is penetrated";
@@ -120,7 +120,7 @@ static bool choose_hit(struct Resolution *resolution, size_t contact) {
   return is_fine;
 }
 
-/* Lets sticking frictions slide whose contacts are all open. */
+/* Lets sticking frictions slide if all their contacts are open. */
 static void let_go(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
@@ -186,8 +186,8 @@ static const char *report_singular_impact(const struct Resolution *resolution, s
 static const double largest_step_error = 1e-4;
 
 /*
- * True if the bounce is lower than the error of the first step that an importer makes after the impact: it would then
- * reach the ground while the contact still opens, and again after the next impact.
+ * True if the bounce is lower than the error of the importer's first step after the impact. The importer would then
+ * find the contact penetrated while it still opens, after this impact and each following one.
  */
 static bool is_overtaken(const struct Resolution *resolution, size_t contact) {
   size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
@@ -209,7 +209,7 @@ static bool comes_to_rest(const struct Resolution *resolution, size_t contact) {
          bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
 }
 
-/* Lets frictions slide that stick at a velocity that an impact has set, before the velocities are projected. */
+/* Lets sticking frictions slide if an impact has given them a velocity, before the velocities are projected. */
 static void let_moving_slide(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count && resolution->jumped; i++) {
@@ -301,7 +301,7 @@ static const char *let_rest(struct Resolution *resolution) {
   return let_stopped_slip(resolution) ? NULL : report_rest(resolution);
 }
 
-/* Returns the gap beyond which a closed contact was moved apart; larger for importers, whose states drift more. */
+/* Returns the gap above which a closed contact counts as moved apart; larger for importers, whose states drift more. */
 static double largest_drift(const struct Resolution *resolution) {
   return (resolution->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(resolution->state, 0);
 }

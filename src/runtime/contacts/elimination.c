@@ -4,7 +4,7 @@
 
 #include "arithmetic.h"
 
-/* Smaller pivots count as 0, for matrices of size 1. */
+/* Smaller pivots count as 0. The elements of the matrices are of order 1. */
 static const double smallest_elimination_pivot = 1e-11;
 
 static void swap_equations(size_t width, double *one, double *other) {

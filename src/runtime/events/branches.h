@@ -5,8 +5,8 @@
 #include "events/resolution.h"
 
 /*
- * Switches the pieces, or, with sides, the signs of events' expressions; sets *switched if any changed. Returns NULL,
- * or the reason why one cannot.
+ * Switches the pieces of functions, or, with last_signs, the signs of events' expressions; sets *switched if any
+ * changed. Returns NULL, or the reason why one cannot.
  */
 const char *branches_switch(struct Resolution *resolution, bool last_signs, bool *switched);
 

@@ -20,7 +20,7 @@ void chebyshev_times(Real from, Real to, Real *times) {
   for (int node = 0; node < CHEBYSHEV_NODES; node++) times[node] = chebyshev_time(from, to, node);
 }
 
-/* A discrete cosine transform, by sums and differences of nodes symmetric to the middle. */
+/* Makes a discrete cosine transform, by sums and differences of nodes symmetric about the middle. */
 void chebyshev_coefficients(const Real *f, Real *c) {
   const double share = 2.0 / CHEBYSHEV_DEGREE, narrow = cosines[1], half = cosines[2], wide = cosines[3];
   Real end = 0.5 * (f[0] + f[8]), outer = f[1] + f[7], next = f[2] + f[6], inner = f[3] + f[5];
@@ -56,7 +56,7 @@ void chebyshev_derivative(const Real *c, Real *d) {
   d[0] *= 0.5;
 }
 
-/* Clenshaw's algorithm. */
+/* Evaluates the sum by Clenshaw's algorithm. */
 Real chebyshev_value(const Real *c, Real slot) {
   Real next = REAL(0.0), sum = REAL(0.0);
   for (int k = CHEBYSHEV_DEGREE; k > 0; k--) {

@@ -74,7 +74,7 @@ static double share_of_jump(const struct Resolution *resolution, size_t first, s
   return jump;
 }
 
-/* Logs an energy or momentum that jumps: nothing determines how the velocities would have to jump with it. */
+/* Logs an energy or momentum that jumps: the velocities after such a jump are not determined. */
 static const char *check_energy(const struct Resolution *resolution) {
   bool by_events = resolution->jumped || resolution->set_mode || resolution->occasion == AT_CHANGE;
   if (resolution->energetic == NULL || by_events || resolution->occasion == AT_START) return NULL;

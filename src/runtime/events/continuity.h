@@ -1,6 +1,6 @@
 /*
- * Continuity at switches: a branch that switches must not make positions, velocities or energies jump, since nothing
- * determines how velocities would have to jump with them.
+ * Continuity at switches: a branch that switches must not make positions, velocities or energies jump, since the
+ * velocities after such a jump are not determined.
  */
 #ifndef CONTINUITY_H
 #define CONTINUITY_H

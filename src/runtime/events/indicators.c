@@ -11,7 +11,7 @@ static const double least_share = 0.1;
 
 /* Ratio of a rounding error bound to the change by one perturbation. */
 static const double error_bound_of_difference = 8.0;
-/* Factor of the second pattern: a sum with larger terms may lose a change in the last digit, and keeps a larger one. */
+/* Factor of the second pattern: a sum with larger terms may lose a change in the last digit, but not a larger one. */
 static const double further = 8.0;
 
 /* Relative rounding error of an operation or a library function. */

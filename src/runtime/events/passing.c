@@ -278,7 +278,7 @@ static bool is_at_corner(struct Instance *instance, double time, size_t indicato
 }
 
 /*
- * Ends the step at endless events. An importer in event mode would go on by one more event at each step, so for it
+ * Ends the step at endless events. An importer in event mode would continue by one more event at each step, so for it
  * the step does not advance.
  */
 static const char *report_zeno(struct Instance *instance, const struct CommunicationStep *step,

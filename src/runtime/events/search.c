@@ -1,5 +1,5 @@
 /*
- * Search for events: finds the first time in an interval at which an indicator g_i(t) leaves its sign s_i, along the
+ * Search for events: finds the first time in an interval at which an indicator g_i(t) loses its sign s_i, along the
  * solver's dense output (L. F. Shampine, S. Thompson: Event location for ordinary differential equations, Computers and
  * Mathematics with Applications 39, 2000, describe the problem).
  *
@@ -55,10 +55,10 @@ struct Search {
   double *state, *rounded; /* state_count each: workspace */
   double *values;          /* one for each indicator */
   double *samples;         /* CHEBYSHEV_NODES rows of values */
-  double *projected;       /* the same at projected states, if has_projected */
+  double *projected;       /* CHEBYSHEV_NODES rows of values at projected states, if has_projected */
   double *exact;           /* one for each indicator: values at the start */
   double *error_bound;     /* rounding error bounds of the indicators */
-  int intervals;           /* number that may still be looked at */
+  int intervals;           /* number that may still be examined */
   bool is_exact;           /* times are found to rounding; else times before them */
   bool has_projected;
   bool projects;    /* project states, so that indicators held at 0 by constraints stay 0 */
@@ -94,7 +94,7 @@ static void sample(struct Search *search, double time, double *values) {
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
-/* Evaluates them at the nodes of an interval. states: at the nodes; NULL if they are not all available. */
+/* Evaluates the indicators at the nodes of an interval. states: at the nodes; NULL if not all are available. */
 static void sample_interval(struct Search *search, double from, double to, const double *states) {
   double times[CHEBYSHEV_NODES];
   size_t count = indicator_count(lagrangian.switches);
@@ -152,7 +152,7 @@ enum Verdict search_judge(const double *f, double error_bound) {
   return fmax(f[CHEBYSHEV_DEGREE], f[CHEBYSHEV_DEGREE - 1]) > error_bound ? FALLS : UNKNOWN;
 }
 
-/* A time, and the value of f there. */
+/* A time, and the value of f at that time. */
 struct Sample {
   double time, f;
 };
@@ -214,7 +214,7 @@ static double refine(struct Search *search, size_t indicator, double sign, struc
   return before.f <= -behind.f && !is_later ? before.time : behind.time;
 }
 
-/* The same in an interval in which f, with these values at the nodes, falls through 0 once. */
+/* Locates the zero in an interval in which f, with these values at the nodes, falls through 0 once. */
 static double refine_fall(struct Search *search, size_t indicator, double sign, const double *f, double from,
                           double to) {
   int node = CHEBYSHEV_DEGREE;
@@ -248,7 +248,7 @@ static double first_fall_in(struct Search *search, size_t indicator, double sign
   return isfinite(first) ? first : first_fall(search, indicator, sign, middle, end, depth - 1);
 }
 
-/* The same in an interval without samples. */
+/* Returns the first time in the interval at which f falls below 0, from new samples; INFINITY if there is none. */
 static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth) {
   double f[CHEBYSHEV_NODES];
   if (--search->intervals < 0) return INFINITY;
@@ -366,8 +366,8 @@ static void project_samples(struct Search *search, size_t indicator, double from
 }
 
 /*
- * Returns the time of the first sample up to an end, and its branch; INFINITY if all are later. A sample before from
- * was passed by rounding of communication points, and happens at from.
+ * Returns the time of the first <sample> in [from, to], and its branch; INFINITY if all are later. Rounding of
+ * communication points may leave one before `from`, which then happens at `from`.
  */
 static double first_sample(const struct Instance *instance, double from, double to, size_t *branch) {
   double first = INFINITY;

@@ -1,4 +1,4 @@
-/* Search for events: the first time at which an indicator leaves its sign (search.c). */
+/* Search for events: the first time at which an indicator changes its sign (search.c). */
 #ifndef SEARCH_H
 #define SEARCH_H
 
@@ -10,7 +10,7 @@ enum Exactness { TO_ROUNDING, BEFORE_IT };
 /* STAYS: f does not fall below 0. FALLS: it does so once. UNKNOWN: the interval must be halved. */
 enum Verdict { STAYS, FALLS, UNKNOWN };
 
-/* Judges f by its values at the nodes of its Chebyshev polynomial (chebyshev.h); it is positive while the mode stays. */
+/* Classifies f, which is positive while the mode stays, by its values at the Chebyshev nodes (chebyshev.h). */
 enum Verdict search_judge(const double *f, double error_bound);
 
 /* Returns the number of doubles of workspace of a search, including those of search_interval_shorten(). */

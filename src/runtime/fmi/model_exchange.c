@@ -66,7 +66,7 @@ enum Status exchange_get_derivatives(struct Instance *instance, double *derivati
 
 enum Status exchange_get_nominals(struct Instance *instance, double *nominal, size_t count) {
   if (!check_states(instance, nominal, count)) return STATUS_ERROR;
-  /* compilers know this count, and that there are no nominal values without states */
+  /* without states nominal is NULL, which memcpy() must not get; compilers see that and warn */
   if (lagrangian.state_count > 0) memcpy(nominal, lagrangian.steps.nominal, count * sizeof *nominal);
   return STATUS_DONE;
 }
@@ -85,8 +85,8 @@ enum Status exchange_get_event_indicators(struct Instance *instance, double *ind
 }
 
 /*
- * Refuses to compute past stopTime (FMI 2.0.4, section 2.1.6; FMI 3.0.2, section 2.3.2). Completed steps and events
- * count. Trial points of an integrator do not: CVode steps past the last output, and interpolates back.
+ * Reports an error for computations past stopTime (FMI 2.0.4, section 2.1.6; FMI 3.0.2, section 2.3.2). Completed steps
+ * and events count. Trial points of an integrator do not: CVode steps past the last output, and interpolates back.
  */
 static enum Status check_stop_time(struct Instance *instance) {
   const struct FmuState *fmu_state = instance->fmu_state;

@@ -1,6 +1,6 @@
 /*
- * States and modes whose start values are expressions of parameters. Until the start they follow these, unless set
- * themselves.
+ * States and modes whose start values are expressions of parameters. Until the start they follow the
+ * parameters, unless they were set themselves.
  */
 #ifndef INITIAL_STATE_H
 #define INITIAL_STATE_H

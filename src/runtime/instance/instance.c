@@ -17,7 +17,7 @@ size_t fmu_state_size(void) {
   return sizeof(struct FmuState) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
 }
 
-/* FNV-1a, 64 bits. */
+/* Computes the 64-bit FNV-1a hash. */
 uint64_t instance_checksum(const void *block, size_t size) {
   const unsigned char *bytes = block;
   uint64_t hash = 0xcbf29ce484222325u;

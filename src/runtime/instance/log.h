@@ -38,7 +38,7 @@ void log_message(const struct Instance *instance, enum Status status, const char
 /* Logs an error and puts the instance into PHASE_ERROR until it is reset. Returns STATUS_ERROR. */
 enum Status log_error(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
 
-/* The same for a call that is not allowed, with the name of its function before the message. */
+/* Logs that a call is not allowed, with the name of its function before the message, as log_error() does. */
 enum Status reject_call(struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
 
 /* Logs why a call has no effect, with the name of its function before the message. Returns STATUS_DISCARD. */

@@ -20,7 +20,7 @@ struct Solver {
   const char *name;         /* in messages */
   const char *remedy;       /* advice after the message that it stopped; NULL for the usual one */
   const char *alternatives; /* other methods that may not stop, and when; NULL for none */
-  const char *finer;        /* methods with smaller errors inside a step; NULL for none */
+  const char *finer;        /* methods with smaller errors inside a step, for advice; NULL for none */
   /* The solver restarts at every communication step, so that results do not depend on its memory. */
   bool starts_anew;
   /* Returns the bytes of the solver's part of the snapshot, at instance->saved; NULL for none. */

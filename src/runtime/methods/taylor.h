@@ -22,7 +22,7 @@ struct Stagnation {
 
 /*
  * Memory of the method. saved, low and x are in the snapshot; the series is valid from the start of span for
- * saved->reach seconds.
+ * saved->interval seconds.
  */
 struct Taylor {
   struct TaylorSaved *saved;

@@ -111,8 +111,8 @@ int taylor_start(struct Instance *instance, const struct Taylor *taylor, double 
 }
 
 /*
- * Evaluates d state / dt at s after the origin, at the state to which the changes taylor->term lead. Each number of the
- * state is perturbed by the relative amount share, with alternating signs. False if d state / dt does not exist.
+ * Evaluates d state / dt at s after the origin, at the state there: x at the origin plus taylor->term. Each number of
+ * the state is perturbed by the relative amount share, with alternating signs. False if d state / dt does not exist.
  */
 static bool right_side(struct Instance *instance, const struct Taylor *taylor, double s, double share,
                        double *derivative) {
@@ -197,7 +197,7 @@ static double exact_interval(const struct Taylor *taylor, double step) {
   return taylor->span->start + step - taylor->span->start;
 }
 
-/* Leaves Euler's method of the series: a root has no series at 0, but leaves the accelerations finite. */
+/* Reduces the series to Euler's method: at 0 a root has no series, but the accelerations are finite. */
 static void use_euler_step(const struct Taylor *taylor) {
   for (size_t i = 0; i < lagrangian.state_count; i++)
     for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;

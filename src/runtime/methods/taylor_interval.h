@@ -14,8 +14,8 @@ int taylor_start(struct Instance *instance, const struct Taylor *taylor, double 
 void taylor_measure_scales(struct Taylor *taylor);
 
 /*
- * Sets the step of the series in taylor->x (saved->reach), as described in taylor_interval.c; 0 if no step is possible.
- * communication_step: in s, > 0.
+ * Sets the step of the series in taylor->x (saved->interval), as described in taylor_interval.c; 0 if no step is
+ * possible. communication_step: in s, > 0.
  */
 void taylor_choose_interval(struct Instance *instance, struct Taylor *taylor, double communication_step);
 

@@ -141,7 +141,7 @@ static double come_to_law(struct Cones *cones, int trials, double *best, double 
   return least;
 }
 
-/* Takes workspace for cones and what solves them; impulses in it if impulse is NULL. NULL if memory is missing. */
+/* Takes workspace for the cones and their solvers; also for the impulses if impulse is NULL. NULL without memory. */
 static double *create_cones(const struct Resolution *resolution, const struct ContactImpulses *impulses,
                             const double *rate, double *impulse, struct Cones *cones) {
   struct Instance *instance = resolution->instance;

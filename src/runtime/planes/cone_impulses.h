@@ -5,8 +5,8 @@
 #include "contacts/contact_impulses.h"
 
 /*
- * Implements find_impulses of struct FrictionLaws. impulse[] holds the last trial if none are found. False also if a
- * contact cannot be moved, or memory is missing.
+ * Implements find_impulses of struct FrictionLaws. Returns false if none are found; impulse[] then holds the last
+ * trial. Returns false, too, if no impulse moves one of the contacts, or memory is missing.
  */
 bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                         double *impulse);

@@ -4,7 +4,7 @@
 
 #include "contacts/contact_impulses.h"
 
-/* The problem, in the rows of pushes: contacts, then frictions, of which those in a plane have two rows. */
+/* The problem, with the rows of `impulses`: contacts, then frictions, of which those in a plane have two rows. */
 struct Cones {
   const struct Resolution *resolution;
   const struct ContactImpulses *impulses;

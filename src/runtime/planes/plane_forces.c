@@ -18,7 +18,7 @@
 /* Relative to the largest acceleration: accelerations, also of forces, below this are rounding errors. */
 static const double least_force_share = 1e-9;
 
-/* Rows as in pushes: accelerations without these forces, the forces, and the accelerations with them. */
+/* With the rows of `impulses`: accelerations without these forces, the forces, and the accelerations with them. */
 struct PlaneForces {
   struct Resolution *resolution;
   struct ContactImpulses impulses;

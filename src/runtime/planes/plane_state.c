@@ -22,8 +22,8 @@ static const double least_part = 1e-9;
  */
 static const double never = -1e300, has_deviated = -1e-300;
 /*
- * Slope: a velocity that has turned back at less than this slope to the slip direction, without an impact, has passed
- * rest.
+ * A velocity that has turned back, without an impact, has passed rest if its component across the slip direction is
+ * less than this fraction of the component against it.
  */
 static const double slope_back = 0.5;
 

@@ -9,7 +9,7 @@
 struct SharedLoad {
   size_t rows, count;
   double *jacobian_row; /* rows x 2 count: generalized forces of unit forces, G; overwritten */
-  double *share;        /* forces that carry the load: first any, then those found */
+  double *share;        /* forces that carry the load: any on entry, those with a margin on return */
   double *work;
 };
 
@@ -21,7 +21,7 @@ struct SharedLoad shared_load_in(void *block, size_t rows, size_t count);
 
 /*
  * LOAD_IS_SHARED: all forces are below their limits. LOAD_IS_AT_LIMIT: the largest equals its limit within rounding.
- * LOAD_OVERCOMES: the forces are unique, or every distribution exceeds a limit.
+ * LOAD_OVERCOMES: every distribution exceeds a limit, or there is no choice since the forces are unique.
  */
 enum LoadSharing { LOAD_IS_SHARED, LOAD_IS_AT_LIMIT, LOAD_OVERCOMES };
 

@@ -1,10 +1,10 @@
-/* Starts the simulation and each of its steps: fulfils the constraints, and finds the modes, for the values set. */
+/* Start of the simulation and of each step: satisfies the constraints and finds the modes for the values set. */
 #ifndef START_H
 #define START_H
 
 #include "instance/instance.h"
 
-/* Computes the start of the simulation from the set values, after events there. Logs an error if there is none. */
+/* Computes the state at the start from the values set, after any events there. Logs an error if there is none. */
 enum Status start_find(struct Instance *instance);
 
 /*

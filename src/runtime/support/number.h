@@ -33,7 +33,7 @@ static inline void number_subtract_product(size_t width, double *sum, const doub
   }
 }
 
-/* a *= b */
+/* Replaces a by a b. */
 static inline void number_multiply(size_t width, double *a, const double *b) {
   double product[COMPLEX] = {0.0, 0.0};
   number_add_product(width, product, a, b);
@@ -41,7 +41,7 @@ static inline void number_multiply(size_t width, double *a, const double *b) {
   if (width == COMPLEX) a[1] = product[1];
 }
 
-/* a = 1 / a */
+/* Replaces a by 1 / a. */
 static inline void number_invert(size_t width, double *a) {
   if (width == REAL) {
     a[0] = 1.0 / a[0];

@@ -45,12 +45,15 @@ static bool is_monotone(const double *u, int order, double step) {
   return first > order || others <= first * fabs(u[first]);
 }
 
-/* A power of a base without turning points is largest at an end of the step, where the defect is measured. */
+/*
+ * True if a power of u cannot hide a change in the step. A power of a base without turning points is largest at an end
+ * of the step, where the defect is measured.
+ */
 static bool power_fits(const double *u, int order, double step, double bound) {
   return excursion(u, order, step) <= bound || is_monotone(u, order, step);
 }
 
-/* The same before and after the origin: u must cross it with a nonzero slope. */
+/* True if the same holds before and after the origin: u must cross it with a nonzero slope. */
 static bool power_fits_around(const double *u, int order, double step, double bound) {
   return excursion(u, order, step) <= bound || (u[1] != 0.0 && is_monotone(u, order, step));
 }

@@ -261,7 +261,7 @@ static void fraction_subtract(struct Fraction *x, const struct Fraction *factor,
   *x = difference;
 }
 
-/* Gauss-Jordan elimination of n rows: the matrix and its right sides, by diagonal pivots. False if one is 0. */
+/* Makes Gauss-Jordan elimination of n rows, matrix and right sides, with diagonal pivots. False if a pivot is 0. */
 static bool eliminate(size_t n, size_t width, struct Fraction *rows) {
   for (size_t k = 0; k < n; k++) {
     struct Fraction *pivot_row = rows + k * width;

@@ -23,7 +23,7 @@ static int only_component(struct SpatialVector axis) {
   return only;
 }
 
-/* Clears the component of a free motion, along which no articulated inertia remains. */
+/* Clears the component of a free motion, along which the articulated inertia is 0. */
 static void clear_component(struct SpatialInertia *inertia, int component) {
   int i = component % 3;
   for (int j = 0; j < 3; j++) {

@@ -44,7 +44,7 @@ static size_t end_in_block(const struct InertiaBlock *block, const double *value
   return found;
 }
 
-/* Does the same for all blocks without a tree; -1 if an element of M is not finite. */
+/* Factors all blocks without a tree; returns as end_in_block(), or -1 if an element of M is not finite. */
 static long ending_coordinate(const struct Inertia *inertia, const double *values, enum PivotFailure ending,
                               int *sign) {
   size_t found = inertia->count;

@@ -7,7 +7,7 @@
 /* The solution of the adjoint equations, and the gradient. */
 struct WeightedGradient {
   Node *right_side; /* of each row of K: the partial derivative of the sum by its acceleration or force */
-  /* of each row: the solution of K multiplier = side; symbols in blocks that are solved at run time */
+  /* of each row: the solution of K multiplier = right_side; symbols in blocks that are solved at run time */
   Node *multiplier;
   Node *elements; /* by state, inputs, parameters and modes, and time, in this order */
   size_t count;   /* number of elements */

@@ -165,7 +165,7 @@ static void append_states(struct SeriesBuilder *builder, const struct Equations 
     append_state(builder, 2 * n + i, series_coefficient(builder, equations->rates.nodes[i]));
 }
 
-/* The final slots of the provisional spaces. */
+/* The final slots, rows and local variables, of slots in the provisional spaces SPACE_OF_... (series_builder.h). */
 struct Rows {
   const struct SeriesBuilder *builder;
   size_t *row; /* for each node with has_row of the builder: its row */
@@ -247,7 +247,7 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
   return rows;
 }
 
-/* Completes the order, and the slots of the limits. */
+/* Sets the program's instructions of an order, counts its recurrences, and resolves the slots of the step limits. */
 static void complete(struct SeriesProgram *program, struct Rows *rows) {
   program->order = resolve(rows);
   for (size_t i = 0; i < program->order->count; i++)

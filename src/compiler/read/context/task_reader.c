@@ -6,7 +6,7 @@
 #include "algebra/formula.h"
 #include "base/memory.h"
 
-/* Length of a formula from which on it is too long to be evaluated for each sample. */
+/* Longest formula, in characters; a longer one takes too long to evaluate for each sample. */
 enum { FORMULA_LIMIT = 4000 };
 
 /* Reads <goal min max>expression</goal>. */

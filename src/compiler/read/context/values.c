@@ -25,7 +25,7 @@ static const char *unit_after(const char *text, double *number) {
   return isalpha((unsigned char)*end) || *end == '%' || *end == '\xc2' ? end : NULL;
 }
 
-/* Cycles are no radians: 1 Hz is 2 pi rad/s, which nobody can see in the dimensions. */
+/* True if one unit counts cycles and the other radians: 1 Hz is 2 pi rad/s, which the dimensions do not show. */
 static bool is_cycle_for_angle(const char *unit, struct Dimension own, struct Dimension expected) {
   return strstr(unit, "Hz") != NULL && own.exponent[RADIAN] != expected.exponent[RADIAN];
 }

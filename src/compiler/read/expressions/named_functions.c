@@ -6,7 +6,7 @@
 #include "read/expressions/number_units.h"
 #include "read/expressions/parser.h"
 
-/* Units of work that a call counts, which bound the time that nested calls take. */
+/* Units of work charged for each call. They bound the time that nested calls take. */
 enum { CALL_WORK = 1000 };
 
 struct NamedFunction *function_named(const struct Scope *scope, const char *full_name) {

@@ -22,8 +22,8 @@
 #include "read/tables/table.h"
 
 /*
- * Limits of the depth of recursion and of the terms of all sums in an expression, and the units of work that a primary
- * counts. They bound the stack and the time of compilation.
+ * Limits of the recursion depth and of the terms of all sums in an expression, and the units of work charged for each
+ * primary expression. They bound the stack and the time of compilation.
  */
 enum { NESTING_LIMIT = 1000, REPETITION_LIMIT = 100000, PRIMARY_WORK = 50 };
 
@@ -170,7 +170,9 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
   }
 }
 
-/* Returns the form of a definition that <set> reads: piecewise functions for which no event waits are plain values. */
+/*
+ * Returns a definition as <set> evaluates it: piecewise functions that <set> alone uses are evaluated without events.
+ */
 static struct Quantity evaluated_at_event(const struct Parser *parser, struct Quantity quantity) {
   if ((parser->location.kinds & AT_INSTANT) == 0 || quantity.whole == ZERO) return quantity;
   quantity.node = parser->scope->keeps_whole ? quantity.whole : quantity.at_instant;
@@ -293,7 +295,7 @@ static bool waits_for_rates(struct Parser *parser, Node node) {
   return waits;
 }
 
-/* Parses der(...). Its argument has no accelerations, no reaction forces, and no inputs without a time derivative. */
+/* Parses der(...). Accelerations, reaction forces and inputs without a time derivative are errors in its argument. */
 static struct Quantity parse_derivative(struct Parser *parser) {
   const struct Location location = parser->location;
   parser->location.kinds &= ~((1u << ACCELERATION) | (1u << REACTION));

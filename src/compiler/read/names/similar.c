@@ -6,7 +6,7 @@
 
 #include "base/sorting.h"
 
-/* Names of this length or more are never similar; it bounds the table of distances. */
+/* Names of this length or more have no similar names. It bounds the table of distances. */
 enum { NAME_LIMIT = 40 };
 
 static bool is_same_letter(char a, char b) {

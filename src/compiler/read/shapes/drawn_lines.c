@@ -8,7 +8,7 @@
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
-/* Length of a formula from which on it is too long to be evaluated for each picture. */
+/* Longest formula, in characters; a longer one takes too long to evaluate for each picture. */
 enum { FORMULA_LIMIT = 4000 };
 
 /* Symbols that an end may depend on. */

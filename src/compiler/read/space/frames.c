@@ -77,7 +77,7 @@ static char *whole_name(bool is_frame, const char *name) {
 }
 
 static void collect(struct Reader *reader, xmlNodePtr node, char *name, const char *attribute) {
-  /* Units of work that a named expression counts. */
+  /* Units of work charged for each named expression. */
   enum { DEFINITION_WORK = 400 };
   graph_work(reader->model->graph, DEFINITION_WORK);
   definitions_add(reader->definitions, name, &(struct NamedExpression){node, attribute, reader->source, NULL});
@@ -99,7 +99,7 @@ static bool is_collected(const struct Reader *reader, bool is_frame, const char 
   return definitions_contain(reader->definitions, whole);
 }
 
-/* True after reporting that either exists. */
+/* True if a frame, point or body of this name was collected, which is reported. */
 static bool is_taken(struct Reader *reader, xmlNodePtr node, const char *name) {
   bool taken = is_collected(reader, true, name) || is_collected(reader, false, name);
   if (taken)
@@ -122,7 +122,7 @@ static char *frame_name(struct Reader *reader, xmlNodePtr node, const char *attr
   return is_in_base ? copy_text("base") : reference_attribute(reader, node, attribute_name);
 }
 
-/* Reports a name that is not a frame. A frame that was collected had an error, which has been reported. */
+/* Reports a name that is not a frame. The error of a frame that was collected has already been reported. */
 static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const char *name) {
   struct SimilarName similar = {.wanted = name};
   if (definitions_are_waiting(reader->definitions) || is_collected(reader, true, name)) return;

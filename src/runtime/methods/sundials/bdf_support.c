@@ -80,7 +80,9 @@ bool bdf_restart(struct Instance *instance, const double *state, const struct Co
          set_tolerances(instance, bdf);
 }
 
-/* Returns the longest step. With inputs or time in the equations, a longer one than that of FMI could miss a pulse. */
+/*
+ * Returns the longest step: with inputs or time in the equations, one beyond the communication step could miss a pulse.
+ */
 static double longest_step(const struct CommunicationStep *step) {
   bool driven = lagrangian.input_count > 0 || lagrangian.steps.depends_on_time;
   return driven ? fmin(step->length, lagrangian.steps.max_step) : lagrangian.steps.max_step;

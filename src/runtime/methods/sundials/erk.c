@@ -50,7 +50,7 @@ static bool create(struct Instance *instance) {
   return sundials_create(instance, sizeof(struct Erk), configure);
 }
 
-/* Starts at a time and the state there with this step in s, at most to end; 0 for one that ERKStep chooses. */
+/* Starts the method at a time, from its state. first: the first step in s; 0 lets ERKStep choose. It stops at end. */
 static bool start_method(struct Instance *instance, struct Erk *erk, double time, double first, double end) {
   const struct Sundials *sundials = &erk->sundials;
   return SUCCEEDS(instance, ERKStepReInit, erk->arkode, sundials_right_side, time, sundials->state) &&
