@@ -103,7 +103,7 @@ def test_it_is_the_fmu(name, tmp_path):
 
 
 def test_start_values_from_parameters(tmp_path):
-    """Of a state and of a mode: x = l + (g/m) t^2/2."""
+    """Start values of a state and of a mode that depend on parameters: x = l + (g/m) t^2/2."""
     (tmp_path / "system.xml").write_text("""<system name="Pushed"><parameter name="l" start="3" unit="m"/><parameter name="g" start="5" unit="N"/><parameter name="m" start="2" unit="kg"/>
       <coordinate name="x" velocity="v" unit="m" start="l"/><mode name="a" unit="m/s2" start="g/m"/><particle mass="m" x="x"/><force coordinate="x">m*a</force>
       <event when="x - 100*l" direction="rising"><set mode="a">0</set></event></system>""")

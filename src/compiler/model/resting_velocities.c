@@ -76,7 +76,7 @@ static void replace_velocities(struct Model *model) {
 
 /* --- Other velocities, such as v - vBelt --- */
 
-/* If value is c f plus a term without velocities, sets *held to that term, the value at f = 0; else returns false. */
+/* If value is c f plus a term without velocities, sets *rest to that term, the value at f = 0; else returns false. */
 static bool is_along(struct Graph *graph, Node value, Node f, Node *rest) {
   const struct Gradient by = gradient_by_kinds(graph, f, OF_VELOCITIES),
                         of = gradient_by_kinds(graph, value, OF_VELOCITIES);
