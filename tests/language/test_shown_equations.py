@@ -224,7 +224,7 @@ def test_latex_is_typeset(name, tmp_path):
 
 @pytest.mark.parametrize("name", fmu.small_names())
 def test_formulas_of_latex_are_read_by_mathtext(name):
-    """Without a LaTeX: matplotlib reads each line, except for cases, which it does not know."""
+    """Matplotlib, in place of LaTeX, reads each line except for cases, which it does not know."""
     from matplotlib.mathtext import MathTextParser
 
     parser = MathTextParser("path")

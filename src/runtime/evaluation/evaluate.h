@@ -55,7 +55,7 @@ const char *evaluate_rate_without_value(struct Instance *instance);
 /* Logs why evaluate_derivatives() returned false, with this status. */
 void log_singularity(struct Instance *instance, enum Status status, double time);
 
-/* Does the same for a requested value or derivative, once for each snapshot. Returns STATUS_DISCARD. */
+/* Logs why a requested value or derivative does not exist, once for each snapshot. Returns STATUS_DISCARD. */
 enum Status discard_for_singularity(struct Instance *instance);
 
 /*

@@ -7,7 +7,7 @@
 /* Evaluates the indicators at a time and state. False if the accelerations do not exist. */
 bool indicators_at(struct Instance *instance, double time, const double *state, double *indicator);
 
-/* Does the same at several times, from rows of states to rows of indicators; NAN if they do not exist. */
+/* Evaluates the indicators at several times, from rows of states to rows of indicators; NAN if they do not exist. */
 void indicators_at_times(struct Instance *instance, const double *times, size_t count, const double *states,
                          double *indicators);
 

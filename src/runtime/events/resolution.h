@@ -135,7 +135,7 @@ bool resolution_evaluate(struct Resolution *resolution);
 /* Evaluates the values at a state, without rounding error bounds. */
 bool resolution_values(struct Resolution *resolution, const double *state, double *value);
 
-/* Does the same at another time, with the inputs of that time. */
+/* Evaluates the values at a state and another time, with the inputs of that time. */
 bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value);
 
 /* Evaluates value[] at a point with accelerations of 0, and the force of one constraint; constraints.count for none. */
