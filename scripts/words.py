@@ -1,6 +1,6 @@
 """
 Find words, sentences and paragraphs that src/STYLE.md excludes, in pages, in comments of C and Python, and in the last commit's subject.
-Print each with its place and what to write instead; the status is 1 if there are any.
+Find functions that comments name and no code has. Print each with its place and what to write instead; the status is 1 if there are any.
 """
 
 import io
@@ -11,7 +11,7 @@ import tokenize
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDERS = ("src", "include", "modelDescription", "scripts", "tests")
+FOLDERS = ("fmu", "src", "include", "modelDescription", "scripts", "tests")
 LONGEST_SENTENCE = 45  # words; the guide asks for 25, and tables of values need some more
 MOST_SENTENCES = 6  # of a paragraph of a page; the guide asks for 4
 LONGEST_SUBJECT = 60  # characters
@@ -124,10 +124,22 @@ def faults_of(path):
 
 def files():
     yield from ROOT.glob("*.md")
-    yield from ROOT.glob("fmu/*.md")
     for folder in FOLDERS:
-        for suffix in ("md", "py", "c", "h"):
+        for suffix in ("md", "py", "c", "h", "js"):
             yield from (ROOT / folder).rglob(f"*.{suffix}")
+
+
+def missing_functions(paths):
+    """Functions that comments name as NAME() and no code has."""
+    words, named = set(), []
+    for path in paths:
+        text = path.read_text()
+        for number, comment in list((python_comments if path.suffix == ".py" else c_comments)(text)):
+            text = text.replace(comment, "", 1)
+            lines = enumerate(comment.split("\n"), number)
+            named += [(path, line, name) for line, part in lines for name in re.findall(r"\b(\w+)\(\)", part) if not name.endswith("_NAME")]
+        words.update(re.findall(r"\w+", text))
+    return [(path, number, f"{name}(), which does not exist", "the present name") for path, number, name in named if name not in words]
 
 
 def fault_of_subject():
@@ -137,7 +149,9 @@ def fault_of_subject():
 
 
 def main():
-    faults = [(f"{path.relative_to(ROOT)}:{number}: {what}", instead) for path in sorted(files()) if path.name != "STYLE.md" for number, what, instead in faults_of(path)]
+    paths = [path for path in sorted(files()) if path.name != "STYLE.md"]
+    found = [(path, *fault) for path in paths for fault in faults_of(path)] + missing_functions([path for path in paths if path.suffix != ".md"])
+    faults = [(f"{path.relative_to(ROOT)}:{number}: {what}", instead) for path, number, what, instead in found]
     faults += fault_of_subject()
     for what, instead in faults:
         print(f"{what}; write {instead}")

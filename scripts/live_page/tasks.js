@@ -73,11 +73,11 @@ function judge(times, rows, isFresh) {
   for (let i = 0; i < times.length; i++) {
     const time = times[i], passed = time - description.startTime, areMet = task.goals.every((goal) => isMet(goal, rows[i][0], time));
     task.metSince = areMet ? (task.metSince ?? time) : null;
-    const heldFor = areMet ? time - task.metSince : 0;
-    if (areMet && heldFor >= task.hold * (1 - 1e-9)) return finishTask(passed);
+    const metFor = areMet ? time - task.metSince : 0;
+    if (areMet && metFor >= task.hold * (1 - 1e-9)) return finishTask(passed);
     if (passed > task.limit) return endTask(`not done within ${seconds(task.limit)}`);
     task.last = time;
-    showState(task, `${seconds(passed)}${task.hold > 0 ? `, held for ${seconds(heldFor)} of ${seconds(task.hold)}` : ""}`);
+    showState(task, `${seconds(passed)}${task.hold > 0 ? `, reached for ${seconds(metFor)} of ${seconds(task.hold)}` : ""}`);
   }
 }
 

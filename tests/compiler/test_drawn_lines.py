@@ -169,7 +169,7 @@ def test_equations_are_those_without_lines(tmp_path):
     ('kind="belt" from="base" to="bob"', 'the belt has no radius; expected radius="..." in m, that of its pulleys'),
     ('kind="hoop" from="base" to="bob" radius="l"', "a hoop has no radius of its own; expected none, as it is the distance of its ends"),
     ('kind="rope" from="base" to="bob" radius="l"', "a rope has no radius of its own; expected none"),
-    ('kind="rod" from="base" to="bob" axis="x"', "a rod has no axis; expected none"),
+    ('kind="rod" from="base" to="bob" axis="x"', "a rod takes no axis; remove the attribute"),
     ('kind="rod" from="base" to="bob" radius="-1"', "the radius of <line> is -1 m; expected a positive number"),
     ('kind="rod" from="base" to="bob" radius="theta"', "radius of <line> cannot depend on coordinates, but 'theta' does; expected numbers and parameters"),
     ('kind="string" from="base" to="bob"', "kind=\"string\" of <line> is not known; did you mean 'spring'?"),

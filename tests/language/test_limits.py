@@ -53,7 +53,7 @@ REJECTED |= {
     "frames in frames": (
         '<frame name="f0"/>' + "".join(f'<frame name="f{k + 1}" in="f{k}"/>' for k in range(100000)), "more than 40000 elements"),
     "attributes": ("<potential " + " ".join(f'a{k}="1"' for k in range(100000)) + ">x</potential>", "more than 200 attributes"),
-    "numbers in a table": ('<table name="t" arguments="2">' + "1 " * 2000000 + "</table>", "2000000 times 0 values"),
+    "numbers in a table": ('<table name="t" arguments="2">' + "1 " * 2000000 + "</table>", "2000000 x 0 values"),
     "a long file": ("<potential>" + " " * 10000000 + "x</potential>", "longer than 10000000 bytes"),
 }  # fmt: skip
 

@@ -61,7 +61,7 @@ def test_units_that_are_not_si(tmp_path, unit, remedy):
 @pytest.mark.parametrize("constant, message", [
     ('<constant name="a" values=" ,"/>', "the constant 'a' has no values; expected numbers"),
     ('<constant name="a"/>', "<constant> needs the attribute 'value'"),
-    ('<constant name="a" value="1" values="1 2"/>', "a <constant> with value and values"),
+    ('<constant name="a" value="1" values="1 2"/>', "a <constant> has both value and values"),
     ('<constant name="a" values="1 b"/>', "unknown name 'b'"),
 ])  # fmt: skip
 def test_messages(tmp_path, constant, message):

@@ -160,7 +160,7 @@ def test_given_in_an_include(tmp_path):
     ('<parameter name="a" type="Integer" value="2"/>', "a <parameter> with a value and a type"),
     ('<parameter name="a" values="1 x"/>', "values cannot depend on coordinates, but 'x' does; expected numbers and constants"),
     ('<parameter name="a" values=" "/>', "the parameter 'a' has no values; expected numbers"),
-    ('<parameter name="a" values="1 2" start="1"/>', "a <parameter> with values and a start or value"),
+    ('<parameter name="a" values="1 2" start="1"/>', "a <parameter> has values and a start or value"),
     ('<parameter name="a[1]" values="1 2"/>', "the parameter 'a[1]' with values has an index; expected a name alone"),
     ('<parameter name="a" values="1 2"/><potential>a*x</potential>', "unknown name 'a'; expected a[1], ..., a[2]"),
     ('<parameter name="a" values="1 2"/><potential>a[3]*x</potential>', "unknown name 'a[3]'; expected a[1], ..., a[2]"),

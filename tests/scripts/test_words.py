@@ -37,3 +37,11 @@ def test_names():
     """Names by their words, whatever joins these; comments and strings do not count."""
     source = 'int is_told;\nint toldings, hold;\nchar s[] = "settle"; /* held */\nstruct PlaneFacts f;\nconst goOn = 1;\nint let_go, on;\n'
     assert [number for number, _, _ in words.wrong_names(source)] == [1, 4, 5]
+
+
+def test_functions_that_are_gone(tmp_path):
+    """A comment may name a function of any file; a name that no code has is found with its line."""
+    (tmp_path / "a.c").write_text("/* Calls first() and\n * second(). */\nint first(void);\n// see third(), gone()\n")
+    (tmp_path / "b.py").write_text("def third():\n    pass\n\n\ndef second():\n    pass\n")
+    found = words.missing_functions([tmp_path / "a.c", tmp_path / "b.py"])
+    assert [(path.name, number, what) for path, number, what, _ in found] == [("a.c", 4, "gone(), which does not exist")]

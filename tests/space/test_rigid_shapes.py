@@ -449,9 +449,9 @@ def test_column_of_five(column_of_five):
 @pytest.mark.parametrize(
     "attributes, message",
     [
-        ('name="q" stiction="1"', "a <contact> with stiction and without friction; expected friction"),
-        ('name="q" friction="mu" stiffness="1e5" stiction="1"', "a <contact> with a stiffness and a stiction; expected creep"),
-        ('name="q" friction="mu" creep="1e-3"', "the creep of a <contact> between shapes without a stiffness"),
+        ('name="q" stiction="1"', "a <contact> has stiction without friction; expected friction"),
+        ('name="q" friction="mu" stiffness="1e5" stiction="1"', "a <contact> has both stiffness and stiction; expected creep"),
+        ('name="q" friction="mu" creep="1e-3"', "a <contact> between shapes has creep without stiffness"),
         ('friction="mu"', "a rigid <contact> without a name"),
     ],
 )

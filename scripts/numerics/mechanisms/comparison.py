@@ -26,7 +26,7 @@ NOTES = [
     "The FMU does 100 communication steps in a C program. exudyn and MuJoCo get one call from Python, and are recorded in another run. "
     "The processor time counts. Models are built, and the FMU is initialized, before that.",
     "exudyn has bodies with joints as constraints (a distance for the pendulum; in space, Euler parameters), modified Newton, one thread, and sparse "
-    "matrices for the large system; its explicit methods refuse constraints, and its joints have no inertia of a drive, which the robot arm needs. "
+    "matrices for the large system; its explicit methods do not support constraints, and its joints have no inertia of a drive, which the robot arm needs. "
     "Of Bricard's mechanism it gets the constraints without the redundant one. MuJoCo has a tree of joints, so that the pendulum has one angle and no constraint, and "
     "closes loops with soft constraints, as stiff as it allows: a time constant of two steps, an impedance of 0.9999. That softness is in its errors.",
     "The drifts that IFToMM's library of benchmark problems asks for are quoted without its problem sheets at hand. The authors' earlier "

@@ -243,7 +243,7 @@ def _remarks(search, found):
         yield f"{search.failed} of {search.count} motions could not be computed, and the search avoided their values"
     reasons = [experiment.why for experiment in search.experiments if experiment.why]
     if reasons:
-        yield f"derivatives of {len(reasons)} of {len(search.experiments)} motions are by differences, since there are no exact ones: {reasons[0]}"
+        yield f"{len(reasons)} of {len(search.experiments)} motions have no exact derivatives; finite differences replace them: {reasons[0]}"
     for experiment in search.experiments:
         for name, time in experiment.wraps.items():
             yield f"'{name}' jumps by a turn at {time:g} s, which was taken for an angle that wraps"

@@ -162,7 +162,7 @@ def _increasing(values, what, least):
     except (TypeError, ValueError):
         raise Problem(f"the {what} are {values!r}; expected numbers, such as numpy.geomspace(0.1, 100, 200)") from None
     if not len(values) or not np.isfinite(values).all() or values[0] < least or (np.diff(values) <= 0).any():
-        raise Problem(f"the {what} are not finite, increasing numbers from {least:g} on; expected some, such as numpy.geomspace(0.1, 100, 200)")
+        raise Problem(f"the {what} are not finite, increasing and at least {least:g}; expected numbers such as numpy.geomspace(0.1, 100, 200)")
     return values
 
 

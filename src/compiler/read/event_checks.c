@@ -143,9 +143,9 @@ static void warn_of_condition(const struct Reader *reader, const struct Event *e
     passed = next;
   }
   report_warning(reader->diagnostics, event->line,
-                 "the event never happens: when=\"%s\" %s; expected <sample every=\"...\"> for what happens at the "
-                 "start and then at equal distances, or a condition that comes to hold later",
-                 event->text, at_start ? "holds at the start, and does not begin to hold later" : "never holds");
+                 "the event never happens: when=\"%s\" %s; expected <sample every=\"...\"> for actions at "
+                 "equal intervals from the start, or a condition that becomes true later",
+                 event->text, at_start ? "is true at the start, and does not become true later" : "is never true");
 }
 
 /* Returns bounds of a divisor. One of parameters keeps the sign that it has at the start. */
@@ -189,7 +189,7 @@ static bool warn_of_outcome(const struct Reader *reader, const struct Event *eve
   enum Outcome outcome = outcome_of(reader->model, event->condition);
   if (outcome == OUTCOME_VARIES) return false;
   report_warning(reader->diagnostics, event->line,
-                 "the event never happens: when=\"%s\" holds at %s; expected a condition that comes to hold",
+                 "the event never happens: when=\"%s\" is true at %s; expected a condition that becomes true",
                  event->text, outcome == OUTCOME_ALWAYS ? "all times" : "no time");
   return true;
 }

@@ -51,15 +51,17 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   enum SymbolKind kind = is_symbol ? graph_symbol_of(model->graph, quantity->node)->kind : PARAMETER;
   if (kind != COORDINATE && kind != VELOCITY && kind != STATE && kind != INPUT) {
     const char *similar = quantity == NULL ? scope_similar_name(scope, name) : NULL;
-    if (similar != NULL) report_error(diagnostics, line, "the point names '%s'; did you mean '%s'?", name, similar);
+    if (similar != NULL)
+      report_error(diagnostics, line, "the operating point sets '%s', which does not exist; did you mean '%s'?", name,
+                   similar);
     else
-      report_error(diagnostics, line, "the point names '%s'; expected a coordinate, a velocity, a state or an input",
-                   name);
+      report_error(diagnostics, line,
+                   "the operating point sets '%s'; expected a coordinate, a velocity, a state or an input", name);
     return;
   }
   Node symbol = model->graph->vertices[quantity->node].left;
   if (model->point.given[symbol])
-    report_error(diagnostics, line, "the point names '%s' twice; expected one value", name);
+    report_error(diagnostics, line, "the operating point sets '%s' twice; expected one value", name);
   struct Dimension dimension = quantity->dimension;
   struct Location location = {.line = line, .what = name, .kinds = 1u << PARAMETER};
   struct Quantity parsed = {.dimension = dimension};

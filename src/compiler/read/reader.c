@@ -68,7 +68,7 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
   for (size_t i = 0; i < model->coordinates.count; i++) {
     if (!model->prescribed.motions[i].is_prescribed) continue;
     model->prescribed.motions[i].reaction = model->reactions.count;
-    append_reaction(model, scope, &model->coordinates.items[i], "force of the drive of");
+    append_reaction(model, scope, &model->coordinates.items[i], "driving force of");
   }
 }
 

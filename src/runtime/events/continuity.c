@@ -82,8 +82,8 @@ static const char *check_energy(const struct Resolution *resolution) {
   double jump = fmax(share_of_jump(resolution, 0, 2), share_of_jump(resolution, 2, count - 2));
   if (!(jump > continuity_allowed_share(resolution))) return NULL;
   log_message(resolution->instance, resolution->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
-              "time %g: %s, line %ld of %s, makes an energy or a position jump by a fraction of %.2g, which determines "
-              "no velocities; expected energies without jumps, or an <event> that sets the velocities",
+              "time %g: %s, line %ld of %s, makes an energy or a position jump by a fraction of %.2g; the velocities "
+              "after it are not determined; expected energies without jumps, or an <event> that sets the velocities",
               resolution->time, resolution->energetic->function, resolution->energetic->line,
               resolution->energetic->file, jump);
   return "an energy jumps";

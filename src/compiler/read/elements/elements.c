@@ -78,7 +78,8 @@ static void define_constant(struct Reader *reader, xmlNodePtr node, char *name, 
 static void read_constants(struct Reader *reader, xmlNodePtr node, const char *name) {
   const char *next = attribute(node, "values");
   size_t count = 0;
-  if (has_attribute(node, "value")) report_at(reader, node, "a <constant> with value and values; expected one of them");
+  if (has_attribute(node, "value"))
+    report_at(reader, node, "a <constant> has both value and values; expected one of them");
   check_name_of_list(reader, node, name);
   for (char *text = next_listed(&next); text != NULL; text = next_listed(&next))
     define_constant(reader, node, format_text("%s[%zu]", name, ++count), text);

@@ -58,7 +58,7 @@ static void check_linear(struct Reader *reader, long line, const char *what, Nod
 /* Reads the second velocity of a friction in a plane. Returns false after reporting an error. */
 static bool read_across(struct Reader *reader, xmlNodePtr node, struct Dimension along, struct Quantity *velocity) {
   if (!has_attribute(node, "velocity")) {
-    report_at(reader, node, "a <friction> with across and without velocity; expected velocity=\"...\" beside it");
+    report_at(reader, node, "a <friction> has across without velocity; expected velocity=\"...\" beside it");
     return false;
   }
   if (!expression_attribute(reader, node, "across", IN_CONSTRAINT, velocity)) return false;
@@ -84,7 +84,7 @@ static void read_forces_back(struct Reader *reader, xmlNodePtr node, struct Dime
   friction->stiction_back = friction->stiction;
   if (!has_force && !has_stiction) return;
   if (friction->plane.axis != NO_PLANE)
-    report_at(reader, node, "a <friction> with across and %s; expected one force in all directions of the plane",
+    report_at(reader, node, "a <friction> has both across and %s; expected one force in all directions of the plane",
               has_force ? "forceBack" : "stictionBack");
   if (has_force)
     friction->sliding_back = friction->stiction_back = read_friction_force(reader, node, "forceBack", unit).node;

@@ -107,15 +107,15 @@ bool read_grid(struct Reader *reader, xmlNodePtr node, const char *name, const c
     if (part->type == XML_TEXT_NODE) table_lines_of_text(&grid.lines, part);
     if (part->type != XML_ELEMENT_NODE || grid.lines.wrong) continue;
     report_error(reader->diagnostics, line_of(part),
-                 "a <point> in the table '%s' of two arguments; expected lines, or a file", name);
+                 "the table '%s' of two arguments has a <point>; expected lines, or a file", name);
     grid.lines.wrong = true;
   }
   if (grid.lines.wrong) return false;
   if (surface->columns >= 2 && surface->rows >= 2) return true;
   report_error(
       reader->diagnostics, line_of(node),
-      "the table '%s' has %zu times %zu values; expected at least two knots of each argument: a line with those "
-      "of the first, then a line for each of the second with the values there",
+      "the table '%s' has %zu x %zu values; expected at least two knots of each argument: a line with the knots of "
+      "the first, then for each knot of the second a line with the knot and its values",
       name, surface->columns, surface->rows);
   return false;
 }

@@ -136,7 +136,7 @@ void check_name_of_list(struct Reader *reader, xmlNodePtr node, const char *name
 static void read_list(struct Reader *reader, xmlNodePtr node) {
   const char *next = attribute(node, "values"), *name = name_attribute(reader, node, "name");
   if (has_attribute(node, "start") || has_attribute(node, "value"))
-    report_at(reader, node, "a <parameter> with values and a start or value; expected values=\"...\" alone");
+    report_at(reader, node, "a <parameter> has values and a start or value; expected values=\"...\" alone");
   if (name == NULL) return;
   check_name_of_list(reader, node, name);
   size_t count = 0;

@@ -277,8 +277,8 @@ void undisplace_branches(struct Reader *reader) {
     if (simplify_fraction(graph, branch->indicator) == ZERO)
       report_error(
           reader->diagnostics, branch->line,
-          "%s has its kink where the displacements are 0, so that the force of reaction has no value there; expected "
-          "the kink elsewhere",
+          "%s has a kink where the displacements are 0, so that the force of reaction is undefined; expected the kink "
+          "elsewhere",
           branch->function);
   }
 }

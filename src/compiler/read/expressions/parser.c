@@ -158,7 +158,7 @@ static void require_input_derivatives(struct Parser *parser, Node node, const ch
            parser->location.what, name, no_derivative, needed);
     else if (known == 0)
       FAIL(parser,
-           "%s cannot depend on inputs, but '%s' does; expected it in a <force>, or derivatives=\"2\" of an <input> "
+           "%s cannot depend on inputs, but '%s' does; use it in a <force>, or write derivatives=\"2\" of an <input> "
            "that moves something",
            parser->location.what, name);
     else if (known < needed && needed > 2)

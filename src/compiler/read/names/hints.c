@@ -198,7 +198,7 @@ const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
   if (allowed == (1u << PARAMETER | 1u << TIME | 1u << INPUT)) return "; expected inputs, parameters and time";
   if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";
   switch (kind) {
-  case INPUT: return "; expected it in a <force>";
+  case INPUT: return "; use it in a <force>";
   case STATE: return "; expected it in a force, a potential, a rate, an event or an output";
   case VELOCITY: return "; expected positions of coordinates and time, from which velocities follow";
   case DISPLACEMENT: return "; expected it in positions, angles, energies and forces";

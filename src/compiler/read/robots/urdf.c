@@ -76,7 +76,7 @@ static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touch
   double *factors = collision->scale;
   for (int i = 0; i < 3; i++) factors[i] = 1;
   if (scale != NULL && (parse_numbers(scale, 3, factors) != 3 || factors[0] * factors[1] * factors[2] == 0))
-    return format_text("the scale '%.60s' of a <mesh>; expected three numbers other than 0", scale);
+    return format_text("the scale of a <mesh> is '%.60s'; expected three numbers other than 0", scale);
   char *path = named != NULL ? path_in_package(robot, named) : NULL;
   if (path == NULL)
     return format_text(

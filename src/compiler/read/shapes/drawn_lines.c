@@ -41,7 +41,7 @@ static void check_attributes(struct Reader *reader, xmlNodePtr node, const struc
     report_at(reader, node, "a %s has no radius of its own; expected none%s", kind,
               (bit(line->kind) & round) != 0 ? ", as it is the distance of its ends" : "");
   if ((bit(line->kind) & with_axis) == 0 && has_attribute(node, "axis"))
-    report_at(reader, node, "a %s has no axis; expected none", kind);
+    report_at(reader, node, "a %s takes no axis; remove the attribute", kind);
 }
 
 /* Returns the length up to the next comma outside of parentheses and brackets. */

@@ -37,20 +37,20 @@ bool has_shape_friction(xmlNodePtr node) {
 
 static void check_attributes(struct Reader *reader, xmlNodePtr node) {
   static const char *const of_compliance[] = {"damping", "creep"}, *const of_rigidity[] = {"restitution", "stiction"};
-  if (has_attribute(node, "gap"))
-    report_at(reader, node, "a <contact> with a gap and between=\"...\"; expected one of them");
-  if (!has_attribute(node, "and")) report_at(reader, node, "a <contact> between one shape; expected and=\"...\" too");
+  if (has_attribute(node, "gap")) report_at(reader, node, "a <contact> has both gap and between; expected one of them");
+  if (!has_attribute(node, "and"))
+    report_at(reader, node, "a <contact> names one shape; expected and=\"...\" with the other");
   for (size_t i = 0; i < sizeof of_compliance / sizeof *of_compliance; i++)
     if (!is_compliant(node) && has_attribute(node, of_compliance[i]))
       report_at(reader, node,
-                "the %s of a <contact> between shapes without a stiffness; expected stiffness=\"...\" in N/m beside it",
+                "a <contact> between shapes has %s without stiffness; expected stiffness=\"...\" in N/m beside it",
                 of_compliance[i]);
   for (size_t i = 0; i < sizeof of_rigidity / sizeof *of_rigidity; i++)
     if (is_compliant(node) && has_attribute(node, of_rigidity[i]))
-      report_at(reader, node, "a <contact> with a stiffness and a %s; expected %s=\"...\" in place of the latter",
+      report_at(reader, node, "a <contact> has both stiffness and %s; expected %s=\"...\" in place of the latter",
                 of_rigidity[i], i == 0 ? "damping" : "creep");
   if (has_attribute(node, "stiction") && !has_shape_friction(node))
-    report_at(reader, node, "a <contact> with stiction and without friction; expected friction=\"...\" beside it");
+    report_at(reader, node, "a <contact> has stiction without friction; expected friction=\"...\" beside it");
 }
 
 /* Returns the name of a type that can touch planes only, other than boxes and cylinders; NULL for other types. */

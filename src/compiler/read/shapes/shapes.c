@@ -75,8 +75,8 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
     report_at(reader, node, "the mesh '%s' has no file; expected file=\"...\" with the path of an STL or OBJ file",
               shape->name);
   if (has_attribute(node, "axis") && (TYPE(shape->type) & without_axis) != 0)
-    report_at(reader, node, "the shape '%s' is %s %s, which has no axis; expected none", shape->name, article_of(shape),
-              shape_type_names[shape->type]);
+    report_at(reader, node, "the shape '%s' is %s %s, which takes no axis; remove the attribute", shape->name,
+              article_of(shape), shape_type_names[shape->type]);
   if (shape->type == SHAPE_BOX && !has_size)
     report_at(reader, node, "the box '%s' has no size; expected sizeX, sizeY and sizeZ in m", shape->name);
 }

@@ -29,7 +29,7 @@ static char *meaning_of_prefix(const xmlError *error, const char *file) {
 static char *meaning_of(const xmlError *error) {
   const char *message = error->message != NULL ? error->message : "", *name = error->str1, *other = error->str2;
   if (strstr(message, "EntityRef") != NULL)
-    return copy_text("'&' stands in a text; write &amp; for the sign itself, or 'and' between conditions");
+    return copy_text("a text has a bare '&'; write &amp; for the sign itself, or 'and' between conditions");
   if (strstr(message, "not proper UTF-8") != NULL)
     return copy_text("the file has letters in an encoding other than UTF-8; save it in UTF-8");
   switch (error->code) {
@@ -42,7 +42,7 @@ static char *meaning_of(const xmlError *error) {
     return copy_text("the value of an attribute is not in straight quotes; expected name=\"value\"");
   case XML_ERR_ATTRIBUTE_WITHOUT_VALUE:
     return format_text("the attribute '%s' has no value; expected %s=\"...\"", name, name);
-  case XML_ERR_ATTRIBUTE_REDEFINED: return format_text("the attribute '%s' is given twice; expected it once", name);
+  case XML_ERR_ATTRIBUTE_REDEFINED: return format_text("the attribute '%s' is given twice; expected once", name);
   case XML_ERR_SPACE_REQUIRED:
     return copy_text(
         "attributes do not follow each other; expected name=\"value\" name=\"value\", with both quotes and "
@@ -63,7 +63,8 @@ static char *meaning_of(const xmlError *error) {
     return copy_text("<?xml ...?> stands further down; expected it at the very beginning of the file, or left out");
   case XML_ERR_INVALID_ENCODING:
   case XML_ERR_UNSUPPORTED_ENCODING:
-    return copy_text("the file is not in the encoding that its first line names, or that is not known; expected UTF-8");
+    return copy_text(
+        "the file does not match the encoding of its first line, or that encoding is unknown; expected UTF-8");
   case XML_ERR_HYPHEN_IN_COMMENT: return copy_text("'--' stands inside of <!-- ... -->; expected - or a colon");
   case XML_ERR_COMMENT_NOT_FINISHED: return copy_text("a comment has no end; expected --> after <!--");
   case XML_ERR_UNDECLARED_ENTITY:
