@@ -243,7 +243,7 @@ def test_expressions(tmp_path):
 
 X = dynamicsymbols("x")
 UNEXPRESSED = {
-    "a function that is not known": (LagrangesMethod(X.diff() ** 2 - sm.Function("f")(X), [X]), {}),
+    "the function f(x) is not known": (LagrangesMethod(X.diff() ** 2 - sm.Function("f")(X), [X]), {}),
     "Piecewise((x, x > 0)) has no value where none of its conditions holds": (LagrangesMethod(X.diff() ** 2 - sm.Piecewise((X, X > 0)), [X]), {}),
     "gamma(x) cannot be expressed; expected real numbers": (LagrangesMethod(X.diff() ** 2 - sm.gamma(X), [X]), {}),
     "the potential energy: I cannot be expressed": (LagrangesMethod(X.diff() ** 2 - sm.I * X, [X]), {}),
