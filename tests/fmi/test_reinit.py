@@ -26,9 +26,19 @@ PUSHED = """<system name="Pushed">
 </system>"""
 
 
+# An event sets p, a sample sets q; r follows them.
+RESET = """<system name="{name}">{coordinate}
+  <state name="r" rate="p + q - r"/><state name="p" rate="2 - p"/><state name="q" rate="-q"/>
+  <event when="time > 0.3"><set state="p">0</set></event>
+  <sample every="0.25"><set state="q">q + 1</set></sample>
+</system>"""
+RESETS = {"ResetStates": "", "ResetBeside": '<coordinate name="x" velocity="v"/><particle mass="1" x="x"/>'}
+
+
 @pytest.fixture(scope="module")
 def pushed():
-    fmu.build_systems("reinit", {"Pushed": PUSHED}, versions=(2, 3))
+    resets = {name: RESET.format(name=name, coordinate=coordinate) for name, coordinate in RESETS.items()}
+    fmu.build_systems("reinit", {"Pushed": PUSHED, **resets}, versions=(2, 3))
     return "Pushed"
 
 
@@ -79,6 +89,11 @@ def test_states_that_jump_have_reinit(name, monkeypatch):
 
 def test_states_that_never_jump_have_none(pushed):
     assert reinitialized(fmu, pushed) == reinitialized(fmi3, pushed) == {"u", "h", "w"}
+
+
+@pytest.mark.parametrize("name", RESETS)
+def test_states_that_events_and_samples_set(name, pushed):
+    assert reinitialized(fmu, name) == reinitialized(fmi3, name) == {"p", "q"}
 
 
 def test_a_state_that_is_set_in_event_mode(pushed, opened):

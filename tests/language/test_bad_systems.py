@@ -415,6 +415,15 @@ def test_files_without_a_system(text, message, tmp_path):
     assert re.fullmatch(f"system.xml:({message}).*\n", result.stderr), result.stderr
 
 
+@pytest.mark.parametrize("element", ["event", "sample"])
+def test_events_without_coordinates_and_states(element, tmp_path):
+    trigger = {"event": 'event when="time > 1"', "sample": 'sample every="1"'}[element]
+    text = f"""<system name="Q">\n<mode name="n"/><{trigger}><set mode="n">n + 1</set></{element}>\n<output name="y">n</output></system>"""
+    (tmp_path / "system.xml").write_text(text)
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and re.fullmatch(f"system.xml:2: an? <{element}> needs coordinates or states.*; expected a <state>, such as .*\n", result.stderr), result.stderr
+
+
 @pytest.mark.parametrize("version", ["1.1", "1.2"])
 def test_another_version_of_xml(version, tmp_path):
     """lagc reads the file with a warning, as XML 1.0 requires."""

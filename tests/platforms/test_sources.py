@@ -76,7 +76,18 @@ KINDS = [
     ("FlyballGovernor", "--form", "statements"),
     ("SimplePendulumLinear",),
     ("StateFeedback",),
+    ("WormGear",),
+    ("HydraulicCylinder",),
 ]
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("name", fmu.all_names())
+def test_sources_in_the_fmu_need_only_libm(name, tmp_path):
+    if fmu.description(name).coSimulation is None or not source_of(name).exists():
+        pytest.skip("the solver is a library")
+    words = ["gcc", "-std=c11", "-O0", "-fPIC", "-shared", "-Wl,--no-undefined", source_of(name), "-lm", "-o", tmp_path / "fmu.so"]
+    assert subprocess.run(words, capture_output=True, text=True).stderr == ""
 
 
 @pytest.mark.parametrize("kind", KINDS, ids=" ".join)

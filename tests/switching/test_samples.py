@@ -47,6 +47,14 @@ DIGITS = """
   <solver method="{method}" tolerance="1e-11"/>
 </system>
 """
+DECAY = """
+<system name="Decay_{method}">
+  <mode name="n"/>
+  <state name="z" start="1" rate="-z"/>
+  <sample every="0.01"><set mode="n">n + 1</set></sample>
+  <solver method="{method}"/>
+</system>
+"""
 # Two rates that exchange their values at common times, and a third that sets a state and a velocity.
 RATES = """
 <system name="Rates">
@@ -98,7 +106,8 @@ def built():
     servos = {name_of(method, offset): SERVO.format(name=name_of(method, offset), method=method, offset=offset) for method in METHODS for offset in (0.0, 0.25)}
     digits = {f"Digits_{method}": DIGITS.format(method=method) for method in METHODS}
     paced = {f"Paced_{method}": PACED.format(method=method) for method in METHODS}
-    fmu.build_systems("samples", {"Rates": RATES, "Kicked": KICKED, **servos, **digits, **paced}, versions=[2, 3])
+    decays = {f"Decay_{method}": DECAY.format(method=method) for method in ("taylor", "auto")}
+    fmu.build_systems("samples", {"Rates": RATES, "Kicked": KICKED, **servos, **digits, **paced, **decays}, versions=[2, 3])
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -136,6 +145,14 @@ def test_a_servo_by_every_method(method, offset, step):
     servo = fmu.Instance(name_of(method, offset)).initialize({"t0": offset})
     for row in servo.run(2.95, step, *NAMES):
         assert row[1:] == pytest.approx(exact_servo(row[0], t0=offset), rel=1e-8, abs=1e-8)
+
+
+@pytest.mark.parametrize("method", ["taylor", "auto"])
+def test_many_samples_in_one_step(method):
+    """A decay is not stiff, however many samples interrupt it in one communication step: here 2001."""
+    instance = fmu.Instance(f"Decay_{method}").initialize()
+    instance.step(20)
+    assert instance.get("z", "n") == pytest.approx([math.exp(-20), 2001], abs=1e-7)
 
 
 @pytest.mark.parametrize("method", METHODS)

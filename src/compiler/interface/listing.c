@@ -296,6 +296,7 @@ static void mark_reinitialized_states(struct Interface *interface, const struct 
       const struct Symbol *symbol = graph_symbol_of(model->graph, event->assignments[j].symbol);
       if (symbol->kind == COORDINATE) states[symbol->index].entry.is_reinitialized = true;
       if (symbol->kind == VELOCITY) states[n + (size_t)symbol->index].entry.is_reinitialized = true;
+      if (symbol->kind == STATE) states[2 * n + (size_t)symbol->index].entry.is_reinitialized = true;
     }
   }
 }
@@ -325,7 +326,6 @@ static void append_mechanics(struct Interface *interface, const struct Model *mo
   append_result(interface, "potentialEnergy", "J", equations->potential, "potential energy");
   append_result(interface, "totalEnergy", "J", equations->total, total_energy_description(model));
   mark_moved_states(interface, model, equations);
-  mark_reinitialized_states(interface, model, equations);
 }
 
 /* Returns the expression of an acceleration; in trees its symbol, as each expression would contain the whole tree. */
@@ -371,6 +371,7 @@ struct Interface *interface_create(const struct Model *model, const struct Equat
   append_outputs(interface, model, equations);
   append_calculated(interface, model);
   if (model->coordinates.count > 0) append_mechanics(interface, model, equations);
+  mark_reinitialized_states(interface, model, equations);
   for (size_t i = 0; i < interface->count; i++)
     if (interface->variables[i].entry.kind == VARIABLE_RESULT)
       interface->variables[i].node = without_branches(model, interface->variables[i].node);

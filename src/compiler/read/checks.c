@@ -28,10 +28,10 @@ static void check_content(const struct Reader *reader) {
                            model->energies.kinetic.node != ZERO || model->forces.any))
     report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
   for (size_t i = 0; i < model->switches.event_count && is_motionless(model); i++)
-    if (model->switches.events[i].passage == PASSAGE_SAMPLES)
-      report_error(reader->diagnostics, model->switches.events[i].line,
-                   "a <sample> in a system without coordinates and states; expected a <state>, such as <state "
-                   "name=\"clock\" unit=\"s\" rate=\"1\"/>");
+    report_error(reader->diagnostics, model->switches.events[i].line,
+                 "%s needs coordinates or states, which the system lacks; expected a <state>, such as <state "
+                 "name=\"clock\" unit=\"s\" rate=\"1\"/>",
+                 model->switches.events[i].passage == PASSAGE_SAMPLES ? "a <sample>" : "an <event>");
   if (is_motionless(model) && reader->has_solver)
     report_error(reader->diagnostics, model->solver.line,
                  "a system without coordinates and states has nothing to solve; expected no <solver>");

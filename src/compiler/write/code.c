@@ -72,6 +72,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->ir_functions[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
   if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
   if (has_planes(switches)) include_room(file, "planes");
+  if (switches->resting_count > 0) include_room(file, "rests");
   if (switching != NULL && switching->timed_count > 0) include_room(file, "timing");
   fputs("#endif\n", file);
 }

@@ -197,8 +197,8 @@ static void cut_series(struct Taylor *taylor) {
 static const char *taylor_advance(struct Instance *instance, const struct CommunicationStep *step) {
   struct Taylor *taylor = instance->solver_memory;
   if (step->count == 0) taylor->regular = taylor->crossing = (struct Stagnation){0};
-  double moved = taylor->saved->interval > 0.0 ? move_origin(taylor) : 0.0;
-  const char *problem = reason_to_stop(instance, taylor, moved);
+  /* A series that an event has cut off says nothing about stagnation. */
+  const char *problem = taylor->saved->interval > 0.0 ? reason_to_stop(instance, taylor, move_origin(taylor)) : NULL;
   if (problem == NULL) problem = keep_constraints(instance, taylor);
   if (problem == NULL && !expand(instance, taylor, step->length))
     problem = "the motion has a singularity or grows without bound";
