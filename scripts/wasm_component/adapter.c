@@ -16,6 +16,7 @@
 struct AdapterInstance {
   fmi3Instance instance;
   char *name;
+  size_t state_count, indicator_count; /* which FMI 3.0 does not report in continuous-time mode */
 };
 
 struct Text {
@@ -136,7 +137,9 @@ static struct AdapterInstance *component_of(fmi3Instance instance, char *name) {
     return NULL;
   }
   struct AdapterInstance *component = allocate(1, sizeof *component);
-  *component = (struct AdapterInstance){instance, name};
+  *component = (struct AdapterInstance){.instance = instance, .name = name};
+  fmi3GetNumberOfContinuousStates(instance, &component->state_count);
+  fmi3GetNumberOfEventIndicators(instance, &component->indicator_count);
   return component;
 }
 
@@ -447,18 +450,15 @@ fmi3Status set_continuous_states(struct AdapterInstance *self, double *states, s
   return status;
 }
 
-#define VECTOR(name, function, count_function)                                                                         \
+#define VECTOR(name, function, count)                                                                                  \
   EXPORT(name) struct ListResult *vector_##function(struct AdapterInstance *self) {                                    \
-    size_t count = 0;                                                                                                  \
-    fmi3Status status = fmi3##count_function(self->instance, &count);                                                  \
-    double *values = allocate(count, sizeof *values);                                                                  \
-    if (!has_failed(status)) status = fmi3##function(self->instance, values, count);                                   \
-    return list_result(status, values, count);                                                                         \
+    double *values = allocate(self->count, sizeof *values);                                                            \
+    return list_result(fmi3##function(self->instance, values, self->count), values, self->count);                      \
   }
-VECTOR("get-continuous-states", GetContinuousStates, GetNumberOfContinuousStates)
-VECTOR("get-continuous-state-derivatives", GetContinuousStateDerivatives, GetNumberOfContinuousStates)
-VECTOR("get-nominals-of-continuous-states", GetNominalsOfContinuousStates, GetNumberOfContinuousStates)
-VECTOR("get-event-indicators", GetEventIndicators, GetNumberOfEventIndicators)
+VECTOR("get-continuous-states", GetContinuousStates, state_count)
+VECTOR("get-continuous-state-derivatives", GetContinuousStateDerivatives, state_count)
+VECTOR("get-nominals-of-continuous-states", GetNominalsOfContinuousStates, state_count)
+VECTOR("get-event-indicators", GetEventIndicators, indicator_count)
 
 EXPORT("get-number-of-continuous-states")
 struct CountResult *get_number_of_continuous_states(struct AdapterInstance *self) {

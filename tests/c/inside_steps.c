@@ -51,7 +51,7 @@ int main(int count, char **words) {
   const struct Solver *solver = lagrangian.solver;
   const struct Allocator memory = {calloc, free};
   const struct Log log = {.write = write_message, .wanted = 1u << STATUS_ERROR};
-  const struct Experiment experiment = {.tolerance = 1e-9, .has_tolerance = true};
+  const struct ExperimentSetup experiment = {.tolerance = 1e-9, .has_tolerance = true};
   double end = count == 2 ? strtod(words[1], NULL) : 0.0;
   struct Instance instance;
   if (!(end > 0.0) || !instance_create(&instance, KIND_CO_SIMULATION, &memory, &log)) return 2;

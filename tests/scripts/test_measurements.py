@@ -41,7 +41,7 @@ def test_spellings(lagrange_fmu, tmp_path, text):  # noqa: F811
 @pytest.mark.parametrize("text, why", [
     ("time,theta [deg]\n0,1\n", "'theta' is in 'deg'; expected it in rad"),
     ("time [ms],theta\n0,1\n", "'time' is in 'ms'; expected it in s"),
-    ("time;theta\n0;1.234,5\n", "numbers with commas and numbers with points"),
+    ("time;theta\n0;1.234,5\n", "numbers have decimal commas and decimal points"),
     ("time,theta\n\n0,1\n1,x\n", "data.csv:4: 'x' is not a number"),
     ("time,theta\n0,1,2\n", "data.csv:2: '0,1,2' is not 2 numbers"),
     ("time,theta,theta\n0,1,2\n", "expected time and names of variables, each once"),
@@ -62,7 +62,7 @@ def table(**columns):
 @pytest.mark.parametrize("data, words, why", [
     (table(time=[0, 1], angle=[0, 1]), {}, "'angle' of the data is not an output, .* one of these names: x, v, der"),
     (table(time=[0, 1], k=[0, 1]), {}, "'k' of the data is not an output"),
-    (table(time=[0, 1], F=[0, 1]), {}, "no column that the system has"),
+    (table(time=[0, 1], F=[0, 1]), {}, "no column of the data is an output or state of the system"),
     (table(time=[0], x=[0]), {}, "fewer than two rows"),
     (table(time=[0, 2, 1], x=[0, 0, 0]), {}, "the time 1 s of the data follows 2 s; expected sorted rows"),
     (table(time=[0, 1, 1], x=[0, 0, 0]), {}, "the time 1 s of the data follows 1 s"),
