@@ -16,7 +16,7 @@
 struct AdapterInstance {
   fmi3Instance instance;
   char *name;
-  size_t state_count, indicator_count; /* which FMI 3.0 does not report in continuous-time mode */
+  size_t state_count, indicator_count; /* of model exchange, which FMI 3.0 does not report in continuous-time mode */
 };
 
 struct Text {
@@ -138,8 +138,6 @@ static struct AdapterInstance *component_of(fmi3Instance instance, char *name) {
   }
   struct AdapterInstance *component = allocate(1, sizeof *component);
   *component = (struct AdapterInstance){.instance = instance, .name = name};
-  fmi3GetNumberOfContinuousStates(instance, &component->state_count);
-  fmi3GetNumberOfEventIndicators(instance, &component->indicator_count);
   return component;
 }
 
@@ -163,7 +161,11 @@ struct AdapterInstance *instantiate_model_exchange(char *name, size_t name_count
   fmi3Instance instance =
       fmi3InstantiateModelExchange(own_name, own_token, NULL, visible, logging_on, own_name, hand_on);
   free(own_token);
-  return component_of(instance, own_name);
+  struct AdapterInstance *component = component_of(instance, own_name);
+  if (component == NULL) return NULL;
+  fmi3GetNumberOfContinuousStates(instance, &component->state_count);
+  fmi3GetNumberOfEventIndicators(instance, &component->indicator_count);
+  return component;
 }
 
 /* Returns the buffer of option<own<...>>: whether there is an instance, then its handle. */

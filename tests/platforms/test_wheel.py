@@ -195,7 +195,7 @@ def test_solvers_of_sundials(tmp_path):
     (["check", "bad.xml"], "bad.xml:2: the potential: unknown name 'q'"),
     (["build", "good.xml", "--platforms", "win46"], "the platform 'win46' is not known; did you mean 'win64'?"),
     (["build", "good.xml", "--solver", "euler"], "--solver euler is not known; expected taylor,"),
-    (["build", "good.xml", "-o", "good.xml"], "good.xml/Good.fmu cannot be written: File exists; expected a folder that can be written"),
+    (["build", "good.xml", "-o", "good.xml"], "good.xml/Good.fmu cannot be written: File exists; expected a writable folder with"),
     (["run", "good.xml", "x=abc"], "x: the value: unknown name 'abc'; expected a number, perhaps with its unit"),
     (["run", "good.xml", "x"], "'x' is not NAME=VALUE"),
     (["run", "good.xml", "y=1"], "'y' is not a variable of Good; these can be: x, v"),
