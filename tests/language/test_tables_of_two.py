@@ -155,7 +155,7 @@ def test_energy_in_a_potential(name, open_fmu):
     ("<table name='f' arguments='2' file='huge.csv'/>", "huge.csv:2: the value inf is not finite"),
     ("<table name='f' arguments='2' file='large.csv'/>", "large.csv:32: the table has more than 1000 values"),
     ("<table name='f' arguments='2'>0 1 2 3 4 x</table>", "'x' is not a number; expected the knots of the first argument in the first line"),
-    ("<table name='f' arguments='2'><point x='0' y='1'/></table>", "a &lt;point&gt; in the table 'f' of two arguments; expected lines, or a file"),
+    ("<table name='f' arguments='2'><point x='0' y='1'/></table>", "the table 'f' of two arguments has a &lt;point&gt;; expected lines, or a file"),
     ("<table name='f' arguments='3' file='ok.csv'/>", "arguments=\"3\" of <table> is not known; expected 1 or 2"),
     ("<table name='f' arguments='2' file='ok.csv'/><potential>f(x)</potential>", "expected ',' between the two arguments of a table, found ')'"),
     ("<table name='f' arguments='2' file='ok.csv'/><potential>f(x, 1, 2)</potential>", "expected ')' after the two arguments of a table, found ','"),
