@@ -146,9 +146,12 @@ void write_annotations(xmlTextWriterPtr writer, const struct Model *model, const
   } annotations[] = {{has_scene(model), "lagrange-fmu", scene_write},
                      {model->preset_count > 0, "lagrange-fmu.presets", write_presets},
                      {model->task_count > 0, "lagrange-fmu.tasks", write_tasks}};
-  if (!annotations[0].exists && !annotations[1].exists && !annotations[2].exists) return;
+  const size_t count = sizeof annotations / sizeof *annotations;
+  bool any = false;
+  for (size_t i = 0; i < count; i++) any |= annotations[i].exists;
+  if (!any) return;
   xmlTextWriterStartElement(writer, BAD_CAST all);
-  for (size_t i = 0; i < sizeof annotations / sizeof *annotations; i++) {
+  for (size_t i = 0; i < count; i++) {
     if (!annotations[i].exists) continue;
     xmlTextWriterStartElement(writer, BAD_CAST each);
     write_attribute(writer, attribute, annotations[i].name);

@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tokenize
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -66,6 +67,12 @@ def python_comments(source):
             before = token.type
 
 
+@cache
+def comments_of(path):
+    """Return the comments of a file of C, JavaScript or Python, with the numbers of their first lines."""
+    return list((python_comments if path.suffix == ".py" else c_comments)(path.read_text()))
+
+
 def wrong_names(source):
     """Of code without comments and strings: names that have a word of NAMES, with the line of the first use."""
     found = {}
@@ -115,7 +122,7 @@ def faults_of(path):
     if path.suffix == ".md":
         yield from faults_of_page(text)
     else:
-        for number, comment in (python_comments if path.suffix == ".py" else c_comments)(text):
+        for number, comment in comments_of(path):
             yield from ((number, *fault) for fault in wrong_words(comment))
         if "tests" not in path.parts:
             code = re.sub(r'(?s)""".*?"""', lambda match: "\n" * match[0].count("\n"), text)
@@ -134,7 +141,7 @@ def missing_functions(paths):
     words, named = set(), []
     for path in paths:
         text = path.read_text()
-        for number, comment in list((python_comments if path.suffix == ".py" else c_comments)(text)):
+        for number, comment in comments_of(path):
             text = text.replace(comment, "", 1)
             lines = enumerate(comment.split("\n"), number)
             named += [(path, line, name) for line, part in lines for name in re.findall(r"\b(\w+)\(\)", part) if not name.endswith("_NAME")]

@@ -7,7 +7,8 @@
 // where "..." stands for omitted terms. A node has a kind, a word (of a number, a name or a function) and parts: two or more of sums and
 // products, two of fractions, powers and conditions. Reads each character once; the recursion is as deep as the parentheses.
 
-const TOKEN = /\s*(\.\.\.|\d+(?:\.\d+)?(?:e[-+]?\d+)?|[A-Za-z_](?:\w|\.(?!\.)|\[[^\]]*\])*|\S)/y;
+const NAME = /[A-Za-z_](?:\w|\.(?!\.)|\[[^\]]*\])*/g;
+const TOKEN = new RegExp(`\\s*(\\.\\.\\.|\\d+(?:\\.\\d+)?(?:e[-+]?\\d+)?|${NAME.source}|\\S)`, "y");
 
 // Returns the words of a text, in reverse order, so that the next one is the last.
 function tokensOf(text) {

@@ -1,6 +1,5 @@
 // Typesets the equations of the page, which are texts until then, and lets a reader search the variables.
 
-const NAME = /[A-Za-z_](?:\w|\.|\[[^\]]*\])*/g;
 const multipliers = new Set(document.querySelector("main").dataset.multipliers.split(" "));
 
 // Returns the text with the forces of constraints as multipliers: ground.lambda for ground.force.

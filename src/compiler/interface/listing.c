@@ -294,9 +294,7 @@ static void mark_reinitialized_states(struct Interface *interface, const struct 
     const struct Event *event = &model->switches.events[i];
     for (size_t j = 0; j < event->assignment_count; j++) {
       const struct Symbol *symbol = graph_symbol_of(model->graph, event->assignments[j].symbol);
-      if (symbol->kind == COORDINATE) states[symbol->index].entry.is_reinitialized = true;
-      if (symbol->kind == VELOCITY) states[n + (size_t)symbol->index].entry.is_reinitialized = true;
-      if (symbol->kind == STATE) states[2 * n + (size_t)symbol->index].entry.is_reinitialized = true;
+      if (symbol->kind != MODE) states[state_slot(n, symbol)].entry.is_reinitialized = true;
     }
   }
 }

@@ -162,15 +162,11 @@ static struct Bounds bounds_of_divisor(const struct Model *model, Node divisor) 
 static struct Bounds bounds_with_remainders(const struct Model *model, Node expression) {
   const struct Switches *switches = &model->switches;
   struct KnownBounds *known = allocate(switches->remainder_count, sizeof *known);
-  size_t count = 0;
   for (size_t i = 0; i < switches->remainder_count; i++) {
-    cone_collect(model->graph->cone, model->graph, &expression, 1);
-    if (!cone_has(model->graph->cone, switches->remainders[i].node)) continue;
     struct Bounds divisor = bounds_of_divisor(model, switches->remainders[i].divisor);
-    known[count++] =
-        (struct KnownBounds){switches->remainders[i].node, {fmin(divisor.low, 0.0), fmax(divisor.high, 0.0)}};
+    known[i] = (struct KnownBounds){switches->remainders[i].node, {fmin(divisor.low, 0.0), fmax(divisor.high, 0.0)}};
   }
-  return bounds_of(model, expression, known, count);
+  return bounds_of(model, expression, known, switches->remainder_count);
 }
 
 /* Warns of an expression that does not change its sign. */

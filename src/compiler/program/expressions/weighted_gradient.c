@@ -71,11 +71,11 @@ static void append_accelerations(struct WeightedSum *sum, struct Graph *graph, c
 
 /* Returns the index of a symbol's element in the gradient. */
 static size_t row_of(const struct Model *model, const struct Interface *interface, const struct Symbol *symbol) {
-  size_t index = (size_t)symbol->index, n = model->coordinates.count, states = interface->state_count;
+  size_t index = (size_t)symbol->index, states = interface->state_count;
   switch ((int)symbol->kind) {
-  case COORDINATE: return index;
-  case VELOCITY: return n + index;
-  case STATE: return 2 * n + index;
+  case COORDINATE:
+  case VELOCITY:
+  case STATE: return state_slot(model->coordinates.count, symbol);
   case INPUT: return states + index;
   case PARAMETER: return states + model->inputs.count + index;
   default: return states + model->inputs.count + model->parameters.count + model->switches.mode_count;

@@ -66,13 +66,18 @@ static void read_value(struct Reader *reader, xmlNodePtr node, struct Preset *pr
   }
 }
 
+const struct Preset *preset_named(const struct Model *model, const char *name) {
+  for (size_t i = 0; i < model->preset_count; i++)
+    if (strcmp(model->presets[i].name, name) == 0) return &model->presets[i];
+  return NULL;
+}
+
 void read_preset(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Preset preset = {.name = name_attribute(reader, node, "name"), .description = attribute(node, "description")};
   if (preset.name == NULL) return;
-  for (size_t i = 0; i < model->preset_count; i++)
-    if (strcmp(model->presets[i].name, preset.name) == 0)
-      report_at(reader, node, "a second preset '%s'; expected another name", preset.name);
+  if (preset_named(model, preset.name) != NULL)
+    report_at(reader, node, "a second preset '%s'; expected another name", preset.name);
   for (xmlNodePtr child = xmlFirstElementChild(node); child != NULL; child = xmlNextElementSibling(child))
     read_value(reader, child, &preset);
   if (xmlFirstElementChild(node) == NULL)

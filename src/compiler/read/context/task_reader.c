@@ -5,6 +5,7 @@
 
 #include "algebra/formula.h"
 #include "base/memory.h"
+#include "read/context/preset_reader.h"
 
 /* Longest formula, in characters; a longer one takes too long to evaluate for each sample. */
 enum { FORMULA_LIMIT = 4000 };
@@ -31,14 +32,6 @@ static void read_goal(struct Reader *reader, xmlNodePtr node, struct Task *task)
   task->goals[task->count++] = goal;
 }
 
-static void check_preset_of(struct Reader *reader, xmlNodePtr node, const char *name) {
-  const struct Model *model = reader->model;
-  for (size_t i = 0; i < model->preset_count; i++)
-    if (strcmp(model->presets[i].name, name) == 0) return;
-  report_at(reader, node, "the task starts from the preset '%s', which does not exist; expected the name of a <preset>",
-            name);
-}
-
 void read_task(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   struct Task task = {.name = name_attribute(reader, node, "name"),
@@ -53,7 +46,10 @@ void read_task(struct Reader *reader, xmlNodePtr node) {
   for (size_t i = 0; i < model->task_count; i++)
     if (strcmp(model->tasks[i].name, task.name) == 0)
       report_at(reader, node, "a second task '%s'; expected another name", task.name);
-  if (task.preset != NULL) check_preset_of(reader, node, task.preset);
+  if (task.preset != NULL && preset_named(model, task.preset) == NULL)
+    report_at(reader, node,
+              "the task starts from the preset '%s', which does not exist; expected the name of a <preset>",
+              task.preset);
   for (xmlNodePtr child = xmlFirstElementChild(node); child != NULL; child = xmlNextElementSibling(child))
     read_goal(reader, child, &task);
   if (xmlFirstElementChild(node) == NULL)
