@@ -2,6 +2,7 @@
  * Runs lagc on arbitrary bytes, for libFuzzer (scripts/fuzz). It must end with files or messages, without crashes,
  * leaks or long work.
  */
+#define _GNU_SOURCE /* memfd_create */
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -45,7 +46,8 @@ static void compile(const struct Model *model, const struct Equations *equations
   struct Interface *interface = interface_create(model, equations);
   arrays_find(interface);
   struct Summary *summary = summary_create(model, equations);
-  struct Expressions *expressions = expressions_create(model, equations, interface, (struct Extras){0}, diagnostics);
+  struct Expressions *expressions =
+      expressions_create(model, equations, interface, (struct OptionalParts){0}, diagnostics);
   struct Program *program = expressions != NULL ? program_create(expressions, (enum CodeForm){0}) : NULL;
   if (program != NULL) write_texts(program, summary);
 }
