@@ -80,8 +80,20 @@ static double error_bound_of_rate(const struct Resolution *resolution, size_t br
   return resolution->error_bound[branch_rate_slot(resolution->switches, branch)] + noise;
 }
 
-/* Returns the next sign of an indicator: its own, or at 0 that of its rate. */
-static double branch_mode(const struct Resolution *resolution, size_t branch) {
+/*
+ * True if the piece of the mode has no value here: rounding has left the indicator on the other side of 0, where the
+ * piece, such as a root, does not exist. The event resolution then does not return to it.
+ */
+static bool has_no_value(const struct Resolution *resolution, size_t branch, double mode) {
+  double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
+  bool moves = !isnan(rate) && are_finite(resolution_accelerations(resolution), lagrangian.coordinate_count);
+  bool is_absent = !moves && mode * resolution->value[branch] < 0.0;
+  if (is_absent) resolution->absent[branch] = mode;
+  return is_absent;
+}
+
+/* Returns the sign of an indicator: its own, or at 0 that of its rate. */
+static double sign_of_branch(const struct Resolution *resolution, size_t branch) {
   size_t rate = branch_rate_slot(resolution->switches, branch);
   double mode = mode_of(resolution, resolution->switches->branches[branch].mode);
   double error_bound = error_bound_of_branch(resolution, branch);
@@ -91,9 +103,20 @@ static double branch_mode(const struct Resolution *resolution, size_t branch) {
   sign = sign_with_error_bound(resolution->value[rate], error_bound_of_rate(resolution, branch, error_bound));
   if (sign != 0.0) return sign;
   if (passes(resolution, branch)) return mode == 0.0 ? resolution->instance->departure : -mode;
-  /* Values that were set to 0, without a rate, are at rest, whatever their sign was. */
-  bool was_set = resolution->jumped || resolution->occasion != AT_EVENT;
+  /*
+   * Values that were set to 0, without a rate, are at rest, whatever their sign was; but not if they have a rate there,
+   * as those of a root of rounding errors.
+   */
+  bool was_set = (resolution->jumped || resolution->occasion != AT_EVENT) && resolution->flips[branch] < 2.0;
   return was_set || stays_at_zero(resolution, branch) ? 0.0 : mode;
+}
+
+/* Returns the next mode of a branch: the sign of its indicator, if the piece of this sign has a value here. */
+static double branch_mode(const struct Resolution *resolution, size_t branch) {
+  double mode = mode_of(resolution, resolution->switches->branches[branch].mode);
+  if (has_no_value(resolution, branch, mode)) return -mode;
+  double sign = sign_of_branch(resolution, branch);
+  return sign != 0.0 && sign == resolution->absent[branch] ? mode : sign;
 }
 
 /* Logs a branch both of whose signs lead back to its zero; returns the reason. */

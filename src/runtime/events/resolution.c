@@ -29,6 +29,7 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
       {&resolution->largest, values},
       {&resolution->flips, indicators},
       {&resolution->rate, switches->branch_count},
+      {&resolution->absent, switches->branch_count},
       {&resolution->was_opened, switches->contact_count},
       {&resolution->struck, switches->contact_count},
       {&resolution->value, values},

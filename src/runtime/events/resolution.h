@@ -24,6 +24,7 @@ struct Resolution {
   double *happened;            /* 1 for each event that happened in this round, else 0 */
   double *flips, *was_opened;  /* switches in the event; contacts: 1 opened, -1 closed by force, else 0 */
   double *rate;                /* of each branch before its last switch; 0 if it has not switched */
+  double *absent;              /* of each branch: its mode whose piece has no value here; 0 for none */
   double *first_mode;          /* of each contact, then each friction: at the start of the event */
   double *struck;              /* contacts: 1 if an impulse acted in the event, else 0 */
   double *takes_part;          /* of each contact, then each friction: 1 if in struct ContactImpulses, else 0 */

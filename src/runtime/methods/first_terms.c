@@ -1,5 +1,7 @@
 #include "methods/first_terms.h"
 
+#include <math.h>
+
 #include "evaluation/inputs.h"
 #include "evaluation/services.h"
 
@@ -26,7 +28,10 @@ double first_terms_step(struct Instance *instance, Series *rows, double time, co
   }
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, time, input[i]);
   lagrangian.taylor.series(&point, ORDER, (const Series *)input, x, work);
-  struct SeriesLimit limit = {.order = ORDER - 1, .step = bound, .crosses = true};
+  int order = ORDER - 1;
+  for (size_t i = 0; i < states; i++)
+    if (!isfinite(x[i][2])) order = 1; /* at a root of 0, whose first derivative is infinite */
+  struct SeriesLimit limit = {.order = order, .step = bound, .crosses = true};
   lagrangian.taylor.limit(&point, (const Series *)input, (const Series *)x, (const Series *)work, &limit);
   return limit.step;
 }

@@ -178,6 +178,13 @@ static void predict(struct Radau *radau, const struct RadauMethod *method, doubl
   }
 }
 
+/* Sets the stages to those of Euler's method, as starting values. */
+static void predict_along_tangent(struct Radau *radau, const struct RadauMethod *method, double step) {
+  size_t states = lagrangian.state_count;
+  for (int i = 0; i < method->stages; i++)
+    for (size_t k = 0; k < states; k++) radau->z[(size_t)i * states + k] = method->node[i] * step * radau->first[k];
+}
+
 /* Returns row j of V^-1 times the stages of one state variable. */
 static struct Complex to_eigenvector(const struct RadauMethod *method, int j, const double *stages) {
   size_t states = lagrangian.state_count;
@@ -227,6 +234,18 @@ static bool evaluate_stages(struct Instance *instance, struct Radau *radau, cons
   return true;
 }
 
+/*
+ * Sets the starting values of the stages, and evaluates f there. Where f does not exist at those that predict() gives,
+ * as where a root of 0 begins, the tangent leads to others. False if f does not exist there either.
+ */
+static bool begin_stages(struct Instance *instance, struct Radau *radau, const struct RadauMethod *method, double time,
+                         double step) {
+  predict(radau, method, step);
+  if (evaluate_stages(instance, radau, method, time, step)) return true;
+  predict_along_tangent(radau, method, step);
+  return evaluate_stages(instance, radau, method, time, step);
+}
+
 /* Makes one Newton iteration; returns the norm of the change of z. */
 static double iterate(struct Radau *radau, const struct RadauMethod *method) {
   size_t states = lagrangian.state_count;
@@ -267,11 +286,11 @@ static int solve_stages(struct Instance *instance, struct Radau *radau, const st
   double relative = radau_tolerance(instance);
   double enough = fmax(10 * DBL_EPSILON / relative, fmin(0.01, sqrt(relative))), before = 0.0;
   double expected = pow(fmax(*contraction, DBL_EPSILON), 0.8);
-  predict(radau, method, step);
+  if (!begin_stages(instance, radau, method, time, step)) return 0;
   to_eigenvectors(method, radau->z, radau->w);
   *contraction = expected; /* one iteration gives no new estimate; the old one moves towards 1 */
   for (int iteration = 1; iteration <= ITERATION_LIMIT; iteration++) {
-    if (!evaluate_stages(instance, radau, method, time, step)) return 0;
+    if (iteration > 1 && !evaluate_stages(instance, radau, method, time, step)) return 0;
     double change = iterate(radau, method);
     if (!isfinite(change)) return 0;
     if (iteration > 1) {

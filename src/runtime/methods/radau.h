@@ -47,7 +47,10 @@ struct RadauSystems {
 size_t radau_systems_size(void);
 void radau_systems_slot(struct RadauSystems *systems, double *memory);
 
-/* Evaluates the Jacobian. False if it does not exist or is not finite. */
+/*
+ * Evaluates the Jacobian, with 0 for elements that are not finite, as at a root of 0: the iterations need an
+ * approximation only. False if it does not exist.
+ */
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state);
 
 /* Factors the systems of the method for a step. False if one is singular. */

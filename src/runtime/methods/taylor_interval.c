@@ -223,7 +223,7 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
     step = exact_interval(taylor, step);
     double size = defect_over(instance, taylor, step);
     if (size <= 1.0) return step;
-    if (step <= 2.0 * smallest && isfinite(size)) {
+    if (step <= 2.0 * smallest) {
       use_euler_step(taylor); /* in a step this short, rounding of time hides all higher terms */
       if (isfinite(defect(instance, taylor, step))) return step;
     }
