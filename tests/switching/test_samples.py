@@ -431,13 +431,30 @@ def test_many_runs_at_once():
     ('when="mod(time, Ts) - Ts/2"', None),
     ('when="mod(x, 0.5) - 0.25"', None),
     ('when="sign(x)"', None),
+    ('when="t0 - time"', None),
+    ('when="time &gt;= t0"', None),
+    ('when="time - t0" direction="rising"', None),
+    ('when="time - t0"', "only rises"),
+    ('when="N*Ts - time"', None),
+    ('when="n*t0 - time"', "is 0 at the start and falls, away from 0"),
+    ('when="time - q" direction="rising"', None),
+    ('when="time + Ts" direction="both"', "is 0.1 at the start and rises"),
+    ('when="late - time"', None),
+    ('when="time - late" direction="both"', None),
+    ('when="time &gt; -late"', None),
+    ('when="time &gt; 2 and not flag"', None),
+    ('when="not flag and time &lt; 2"', None),
+    ('when="t0*time - 1" direction="rising"', None),
+    ('when="mod(time, t0)"', "keeps its sign, so that it does not pass 0"),
+    ('when="mod(time, t0) + 1"', None),
+    ('when="mod(time, Ts) + 1"', "is never below 0"),
 ])  # fmt: skip
 def test_events_that_never_happen(event, message, tmp_path):
-    """A mode that another event sets may make the event occur."""
+    """A mode that another event sets may make the event occur, and so may every value of a parameter within min and max."""
     import re
 
     system = tmp_path / "system.xml"
-    system.write_text('<system name="A"><parameter name="Ts" start="0.1" min="0"/><parameter name="flag" type="Boolean" start="false"/><coordinate name="x" velocity="v"/><mode name="n"/><mode name="o"/><particle mass="1" x="x"/>'
+    system.write_text('<system name="A"><parameter name="Ts" start="0.1" min="0"/><parameter name="flag" type="Boolean" start="false"/><parameter name="t0" start="0"/><parameter name="N" type="Integer" start="0"/><parameter name="late" start="1" min="0.5" max="2"/><coordinate name="x" velocity="v"/><mode name="q" start="t0"/><mode name="n"/><mode name="o"/><particle mass="1" x="x"/>'
                       f'<event {event}><set mode="n">n + 1</set></event><event when="x - 1"><set mode="o">2</set></event></system>')  # fmt: skip
     messages = fmu.lagc(system, "-o", tmp_path).stderr
     assert re.search(f"the event never happens: .*{message}", messages) if message else "never happens" not in messages, messages

@@ -4,15 +4,11 @@
 #include <stdlib.h>
 
 #include "algebra/cone.h"
+#include "algebra/differentiate.h"
+#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/bounds.h"
 #include "read/condition_outcomes.h"
-
-/* Samples of an expression: at the start, 1 s and 2 s later. */
-enum { TIMES = 3 };
-
-/* Relative rounding error of the second difference of an expression that is affine in time. */
-static const double rounding = 1e-12;
 
 static bool is_set_by(const struct Event *event, Node mode) {
   bool is_set = false;
@@ -48,33 +44,53 @@ static bool is_alone(const struct Model *model, const struct Event *event) {
   return is_alone;
 }
 
-/* Evaluates the values at the start, and 1 s and 2 s later. False unless they are on a line that rises or falls. */
-static bool evaluate(const struct Model *model, Node expression, double *value) {
-  double *symbols = start_values(model);
-  for (int i = 0; i < TIMES; i++) {
-    value[i] = graph_evaluate(model->graph, symbols)[expression];
-    symbols[model->graph->vertices[model->time].left] += 1.0;
+/* An expression of time: bounds at the start, and of its time derivative from then on, for all parameters in their ranges. */
+struct Course {
+  struct Bounds start, rate;
+};
+
+/* Returns bounds of an expression of time at these times, while modes have their start values. */
+static struct Bounds bounds_at(const struct Model *model, Node expression, struct Bounds times) {
+  size_t count = model->modes.count;
+  struct KnownBounds *known = allocate(count + 1, sizeof *known);
+  known[count] = (struct KnownBounds){model->time, times};
+  for (size_t i = 0; i < count; i++) {
+    const struct Variable *mode = &model->modes.items[i];
+    bool varies = mode->start_expression != ZERO && !graph_is_constant(model->graph, mode->start_expression);
+    struct Bounds start = {mode->start, mode->start};
+    known[i] = (struct KnownBounds){mode->node, varies ? bounds_of(model, mode->start_expression, NULL, 0) : start};
   }
-  double rate = value[1] - value[0], change = value[2] - value[1] - rate;
-  return rate != 0.0 && fabs(change) <= rounding * (fabs(value[0]) + fabs(value[1]) + fabs(value[2]));
+  return bounds_of(model, expression, known, count + 1);
 }
 
-static void warn_of_event(const struct Reader *reader, const struct Event *event) {
-  double value[TIMES];
-  if (!evaluate(reader->model, event->expression, value)) return;
-  double rate = value[1] - value[0];
-  bool rises = rate > 0.0, comes_to_zero = value[0] * rate < 0.0;
+static struct Course course_of(const struct Model *model, Node expression) {
+  double start = isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
+  Node rate = derivative_by(model->graph, expression, model->time);
+  return (struct Course){bounds_at(model, expression, (struct Bounds){start, start}),
+                         bounds_at(model, rate, (struct Bounds){start, INFINITY})};
+}
+
+static bool is_single(struct Bounds bounds) {
+  return bounds.low == bounds.high;
+}
+
+static void warn_of_event(const struct Reader *reader, const struct Model *model, const struct Event *event) {
+  struct Course course = course_of(model, event->expression);
+  struct Bounds start = course.start, rate = course.rate;
+  bool rises = rate.low >= 0.0, falls = rate.high <= 0.0;
+  if (rises == falls) return; /* constant, or of no known direction */
+  bool leaves_zero = rises ? start.low >= 0.0 : start.high <= 0.0;
   bool looks_there = event->passage == PASSAGE_BOTH || (event->passage == PASSAGE_RISES) == rises;
-  const char *course = rises ? "rises" : "falls";
-  if (!comes_to_zero)
+  const char *direction = rises ? "rises" : "falls";
+  if (leaves_zero)
     report_warning(
         reader->diagnostics, event->line,
         "the event never happens: when=\"%s\" is %g at the start and %s, away from 0; expected <sample every=\"...\"> "
         "for an event at the start and then periodically, or an expression that crosses 0 later",
-        event->text, value[0], course);
+        event->text, graph_evaluate(model->graph, start_values(model))[event->expression], direction);
   else if (!looks_there)
     report_warning(reader->diagnostics, event->line,
-                   "the event never happens: when=\"%s\" only %s; expected direction=\"%s\"", event->text, course,
+                   "the event never happens: when=\"%s\" only %s; expected direction=\"%s\"", event->text, direction,
                    rises ? "rising" : "falling");
 }
 
@@ -90,13 +106,18 @@ static int compare_times(const void *first, const void *second) {
   return (a > b) - (a < b);
 }
 
-/* Finds the branches and their times. False if a branch depends on others, or is not affine in time. */
+/*
+ * Finds the branches and their times. False if a branch depends on others, or is not affine in time, or if other values
+ * of parameters give other times or another condition.
+ */
 static bool find_branch_times(const struct Model *model, const struct Event *event, struct BranchTimes *branch_times) {
   const struct Switches *switches = &model->switches;
   struct Cone *cone = model->graph->cone;
   Node *roots = allocate(switches->branch_count + 1, sizeof *roots);
   cone_collect(cone, model->graph, &event->condition, 1);
   roots[0] = event->condition;
+  for (size_t i = 0; i < model->parameters.count; i++)
+    if (cone_has(cone, model->parameters.items[i].node)) return false;
   for (size_t i = 0; i < switches->branch_count; i++)
     if (cone_has(cone, switches->branches[i].mode)) {
       branch_times->branches[branch_times->branch_count++] = &switches->branches[i];
@@ -105,9 +126,9 @@ static bool find_branch_times(const struct Model *model, const struct Event *eve
   cone_collect(cone, model->graph, roots, branch_times->branch_count + 1);
   if (count_switches(model) != branch_times->branch_count || !is_alone(model, event)) return false;
   for (size_t i = 0; i < branch_times->branch_count; i++) {
-    double value[TIMES];
-    if (!evaluate(model, branch_times->branches[i]->indicator, value)) return false;
-    double duration = value[0] / (value[0] - value[1]);
+    struct Course course = course_of(model, branch_times->branches[i]->indicator);
+    if (!is_single(course.start) || !is_single(course.rate) || course.rate.low == 0.0) return false;
+    double duration = -course.start.low / course.rate.low;
     if (duration > 0.0) branch_times->times[branch_times->time_count++] = duration;
   }
   qsort(branch_times->times, branch_times->time_count, sizeof *branch_times->times, compare_times);
@@ -127,8 +148,7 @@ static bool holds_at(const struct Model *model, const struct Event *event, const
   return graph_evaluate(model->graph, symbols)[event->condition] > 0.0;
 }
 
-static void warn_of_condition(const struct Reader *reader, const struct Event *event) {
-  const struct Model *model = reader->model;
+static void warn_of_condition(const struct Reader *reader, const struct Model *model, const struct Event *event) {
   size_t count = model->switches.branch_count;
   struct BranchTimes branch_times = {.branches = allocate(count, sizeof(const struct Branch *)),
                                      .times = allocate(count, sizeof(double))};
@@ -148,34 +168,37 @@ static void warn_of_condition(const struct Reader *reader, const struct Event *e
                  event->text, at_start ? "is true at the start, and does not become true later" : "is never true");
 }
 
-/* Returns bounds of a divisor. One of parameters keeps the sign that it has at the start. */
-static struct Bounds bounds_of_divisor(const struct Model *model, Node divisor) {
-  struct Bounds bounds = bounds_of(model, divisor, NULL, 0);
-  if ((model->graph->vertices[divisor].kinds & ~(1u << PARAMETER)) != 0) return bounds;
-  bool is_positive = graph_evaluate(model->graph, start_values(model))[divisor] > 0.0;
-  if (is_positive && bounds.low < 0.0) bounds.low = 0.0;
-  if (!is_positive && bounds.high > 0.0) bounds.high = 0.0;
-  return bounds;
-}
-
 /* Returns bounds of an expression. mod(a, b) lies between 0 and b. */
 static struct Bounds bounds_with_remainders(const struct Model *model, Node expression) {
   const struct Switches *switches = &model->switches;
   struct KnownBounds *known = allocate(switches->remainder_count, sizeof *known);
   for (size_t i = 0; i < switches->remainder_count; i++) {
-    struct Bounds divisor = bounds_of_divisor(model, switches->remainders[i].divisor);
+    struct Bounds divisor = bounds_of(model, switches->remainders[i].divisor, NULL, 0);
     known[i] = (struct KnownBounds){switches->remainders[i].node, {fmin(divisor.low, 0.0), fmax(divisor.high, 0.0)}};
   }
   return bounds_of(model, expression, known, switches->remainder_count);
 }
 
+/* True for mod(a, b), and for a number times it, which has one sign for any b. */
+static bool is_remainder(const struct Model *model, Node expression) {
+  Node base;
+  bool is_remainder = false;
+  coefficient_of(model->graph, expression, &base);
+  for (size_t i = 0; i < model->switches.remainder_count; i++)
+    is_remainder |= model->switches.remainders[i].node == base;
+  return is_remainder;
+}
+
 /* Warns of an expression that does not change its sign. */
 static void warn_of_sign(const struct Reader *reader, const struct Event *event, bool is_of_time) {
   struct Bounds bounds = bounds_with_remainders(reader->model, event->expression);
-  if (bounds.low < 0.0 && bounds.high > 0.0) return;
+  bool may_pass = bounds.low < 0.0 && bounds.high > 0.0;
+  if (may_pass && !is_remainder(reader->model, event->expression)) return;
   report_warning(reader->diagnostics, event->line,
-                 "the event never happens: when=\"%s\" is never %s 0, so that it does not pass 0; expected %s",
-                 event->text, bounds.low < 0.0 ? "above" : "below",
+                 "the event never happens: when=\"%s\" %s, so that it does not pass 0; expected %s", event->text,
+                 may_pass           ? "keeps its sign"
+                 : bounds.low < 0.0 ? "is never above 0"
+                                    : "is never below 0",
                  is_of_time ? "<sample every=\"...\"> for what happens periodically"
                             : "an expression that changes its sign, or a condition such as x > 1");
 }
@@ -191,14 +214,15 @@ static bool warn_of_outcome(const struct Reader *reader, const struct Event *eve
 }
 
 void warn_of_events(const struct Reader *reader) {
-  const struct Model *model = reader->model;
-  for (size_t i = 0; i < model->switches.event_count; i++) {
-    const struct Event *event = &model->switches.events[i];
-    if (event->passage == PASSAGE_HOLDS && !warn_of_outcome(reader, event)) warn_of_condition(reader, event);
+  struct Model model = *reader->model; /* with a copy of the graph, which derivatives change */
+  if (model.switches.event_count > 0) model.graph = graph_copy(model.graph);
+  for (size_t i = 0; i < model.switches.event_count; i++) {
+    const struct Event *event = &model.switches.events[i];
+    if (event->passage == PASSAGE_HOLDS && !warn_of_outcome(reader, event)) warn_of_condition(reader, &model, event);
     if (event->expression == ZERO) continue;
-    cone_collect(model->graph->cone, model->graph, &event->expression, 1);
-    bool is_of_time = is_alone(model, event);
-    if (is_of_time && count_switches(model) == 0) warn_of_event(reader, event);
+    cone_collect(model.graph->cone, model.graph, &event->expression, 1);
+    bool is_of_time = is_alone(&model, event);
+    if (is_of_time && count_switches(&model) == 0) warn_of_event(reader, &model, event);
     else warn_of_sign(reader, event, is_of_time);
   }
 }
