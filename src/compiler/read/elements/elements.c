@@ -199,15 +199,15 @@ static void read_prescribed_motion(struct Reader *reader, xmlNodePtr node) {
 static void read_output(struct Reader *reader, xmlNodePtr node) {
   struct Variable output = common_attributes(reader, node);
   char *what = format_text("the output '%s'", output.name);
-  struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
-  require_unit(reader, output.line, what, value, output.dimension);
-  if (!output.dimension.known) output.dimension = value.dimension;
-  value.node = without_displacements(reader, output.line, what, value.node);
+  definitions_parse_now(reader->definitions, output.name);
+  if (!definitions_take(reader->definitions, output.name, node)) {
+    struct Quantity value = read_output_value(reader, node, output.name, output.dimension);
+    scope_define(reader->scope, output.name, value, output.line);
+  }
+  if (!output.dimension.known) output.dimension = scope_find(reader->scope, output.name)->dimension;
   /* The output itself stays whole and needs no events, unlike expressions that use its name. */
   Node reported = reader->diagnostics->errors == 0 ? whole_expression_of(reader, node, what, IN_OUTPUT).node : ZERO;
   output.node = without_displacements(reader, output.line, what, reported);
-  value.dimension = output.dimension;
-  scope_define(reader->scope, output.name, value, output.line);
   output.line = scope_line(reader->scope, output.line);
   append_variable(&reader->model->outputs, output);
 }
@@ -357,7 +357,7 @@ static const struct ElementReaders elements[] = {
     {"kinetic", NULL, NULL, NULL, read_kinetic, NULL, false},
     {"line", NULL, NULL, NULL, NULL, read_line, false},
     {"mode", declare_mode, NULL, read_start_of_mode, NULL, NULL, false},
-    {"output", NULL, NULL, NULL, read_output, NULL, false},
+    {"output", NULL, collect_output, NULL, read_output, NULL, false},
     {"parameter", read_parameter, collect_value, NULL, NULL, NULL, false},
     {"particle", number_body, collect_components, read_body, NULL, NULL, false},
     {"point", NULL, collect_components, read_body, NULL, NULL, false},

@@ -32,11 +32,10 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
 }
 
 /*
- * Reads the expression of a <define>. If modes occur in it, also reads it as a <set> sees it: the value at the instant
+ * Reads the text of an element as an expression. If modes occur in it, also reads it as a <set> sees it: the value at the instant
  * of an event, where pieces have plain values, and the whole expression.
  */
-static struct Quantity read_definition(struct Reader *reader, xmlNodePtr node) {
-  static const char what[] = "the definition";
+static struct Quantity read_text(struct Reader *reader, xmlNodePtr node, const char *what) {
   struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);
   bool is_read = reader->diagnostics->errors == 0 && !definitions_are_waiting(reader->definitions);
   if (!is_read || !graph_depends_on(reader->model->graph, value.node, MODE)) return value;
@@ -44,6 +43,18 @@ static struct Quantity read_definition(struct Reader *reader, xmlNodePtr node) {
   value.at_instant = expression_text_of(reader, node, what, IN_OUTPUT | AT_INSTANT).node;
   value.whole = whole_expression_of(reader, node, what, IN_OUTPUT | AT_INSTANT).node;
   reader->scope->requirements.count = requirements;
+  return value;
+}
+
+struct Quantity read_output_value(struct Reader *reader, xmlNodePtr node, const char *name, struct Dimension unit) {
+  char *what = format_text("the output '%s'", name);
+  struct Quantity value = read_text(reader, node, what);
+  if (definitions_are_waiting(reader->definitions)) return value;
+  require_unit(reader, line_of(node), what, value, unit);
+  if (unit.known) value.dimension = unit;
+  Node *const nodes[] = {&value.node, &value.at_instant, &value.whole};
+  for (size_t i = 0; i < sizeof nodes / sizeof *nodes; i++)
+    *nodes[i] = without_displacements(reader, line_of(node), what, *nodes[i]);
   return value;
 }
 
@@ -79,7 +90,9 @@ struct Quantity read_named_expression(struct Reader *reader, const struct NamedE
   else if (is_element(node, "state")) value = read_rate(reader, node);
   else if (is_element(node, "spring")) value = read_spring_value(reader, node, expression->attribute);
   else if (is_element(node, "joint")) value = read_joint_force(reader, node, name);
-  else if (expression->attribute == NULL) value = read_definition(reader, node);
+  else if (is_element(node, "output"))
+    return read_output_value(reader, node, name, unit_attribute(reader, node, "unit"));
+  else if (expression->attribute == NULL) value = read_text(reader, node, "the definition");
   else if (is_parameter || is_input)
     expression_attribute(reader, overrides != NULL ? overrides->node : node, expression->attribute,
                          is_parameter ? IN_MASS : IN_OUTPUT, &value);
@@ -129,6 +142,12 @@ void collect_components(struct Reader *reader, xmlNodePtr node) {
   char *name = name_of_body(reader, node);
   if (name != NULL && is_spatial(node)) collect_spatial(reader, node, name);
   else if (name != NULL) collect_planar(reader, node, name);
+}
+
+void collect_output(struct Reader *reader, xmlNodePtr node) {
+  char *name = name_attribute(reader, node, "name");
+  if (name != NULL && scope_find(reader->scope, name) == NULL)
+    definitions_add(reader->definitions, name, &(struct NamedExpression){.node = node, .source = reader->source});
 }
 
 void collect_value(struct Reader *reader, xmlNodePtr node) {

@@ -1,5 +1,5 @@
 /*
- * Collects and reads the named expressions of definitions.h: those of <define>, calculated <parameter>s and <input>s,
+ * Collects and reads the named expressions of definitions.h: those of <define>, <output>, calculated <parameter>s and <input>s,
  * bodies, frames and rates.
  */
 #pragma once
@@ -12,6 +12,12 @@ bool has_value(xmlNodePtr node, const struct Override *overrides);
 
 /* Collects the expression of a <define>, or of a <parameter> or <input> with a value. */
 void collect_value(struct Reader *reader, xmlNodePtr node);
+
+/* Collects the expression of an <output>. */
+void collect_output(struct Reader *reader, xmlNodePtr node);
+
+/* Reads the expression of an <output> as others use it, with its unit; `unit` is unknown if it has none. */
+struct Quantity read_output_value(struct Reader *reader, xmlNodePtr node, const char *name, struct Dimension unit);
 
 /*
  * Collects the components of a <frame>, <point>, <particle> or <body>. If several have the same name, which is reported

@@ -46,7 +46,7 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
   while (definitions->stack_count > 0) {
     size_t top = definitions->stack_count - 1;
     struct Definition *definition = &definitions->items[definitions->stack[top]];
-    if (definition->state == READ) {
+    if (definition->state >= READ) {
       definitions->stack_count--;
       continue;
     }
@@ -71,10 +71,26 @@ static void read_on_stack(struct Definitions *definitions, struct Reader *reader
   }
 }
 
+/* Parses an output while another element is read, whose indices and attributes of parsing do not hold in it. */
+static void parse_output(void *context, size_t number) {
+  struct Reader *reader = context;
+  struct Scope *scope = reader->scope;
+  const struct Loop *loops = reader->definitions->present;
+  bool keeps_whole = scope->keeps_whole;
+  unbind_indices(scope, loops);
+  scope->keeps_whole = false;
+  definitions_push(reader->definitions, number);
+  read_on_stack(reader->definitions, reader);
+  scope->keeps_whole = keeps_whole;
+  bind_indices(scope, loops);
+}
+
 void resolve_definitions(struct Reader *reader) {
   struct Definitions *definitions = reader->definitions;
+  definitions->parse = parse_output;
+  definitions->reader = reader;
   for (size_t i = 0; i < definitions->count && graph_limit(reader->model->graph) == NULL; i++) {
-    if (definitions->items[i].state == READ) continue;
+    if (definitions->items[i].state >= READ || is_element(definitions->items[i].expression.node, "output")) continue;
     definitions_push(definitions, i);
     read_on_stack(definitions, reader);
   }

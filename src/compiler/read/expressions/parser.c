@@ -181,8 +181,10 @@ static struct Quantity evaluated_at_event(const struct Parser *parser, struct Qu
 
 struct Quantity look_up(struct Parser *parser, const char *name) {
   const struct Quantity *quantity = find_quantity(parser, name);
+  char *full_name = quantity == NULL ? scope_full_name(parser->scope, name) : NULL;
+  if (quantity == NULL && definitions_parse_now(parser->scope->definitions, full_name))
+    quantity = scope_find(parser->scope, full_name);
   if (quantity == NULL) {
-    char *full_name = scope_full_name(parser->scope, name);
     if (!definitions_wait_for(parser->scope->definitions, full_name)) report_unknown_name(parser, name);
     return nothing;
   }

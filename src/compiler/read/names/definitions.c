@@ -48,10 +48,25 @@ void definitions_push(struct Definitions *definitions, size_t number) {
 
 bool definitions_wait_for(struct Definitions *definitions, const char *name) {
   const size_t *number = definitions != NULL ? names_find(definitions->numbers, name) : NULL;
-  if (number == NULL || definitions->stack_count == 0 || definitions->items[*number].state == READ) return false;
+  if (number == NULL || definitions->stack_count == 0 || definitions->items[*number].state >= READ) return false;
   definitions_push(definitions, *number);
   definitions->waiting++;
   return true;
+}
+
+bool definitions_parse_now(struct Definitions *definitions, const char *name) {
+  const size_t *number = definitions != NULL ? names_find(definitions->numbers, name) : NULL;
+  if (number == NULL || definitions->stack_count > 0 || definitions->items[*number].state >= READ) return false;
+  definitions->parse(definitions->reader, *number);
+  return true;
+}
+
+bool definitions_take(struct Definitions *definitions, const char *name, const xmlNode *node) {
+  const size_t *number = names_find(definitions->numbers, name);
+  struct Definition *definition = number != NULL ? &definitions->items[*number] : NULL;
+  bool is_parsed = definition != NULL && definition->expression.node == node && definition->state == READ;
+  if (definition != NULL && definition->expression.node == node) definition->state = TAKEN;
+  return is_parsed;
 }
 
 bool definitions_contain(const struct Definitions *definitions, const char *name) {

@@ -1,10 +1,12 @@
 /*
- * Named expressions: the text of each <define>, the value of each calculated <parameter>, and each component of a
+ * Named expressions: the text of each <define> and <output>, the value of each calculated <parameter>, and each component of a
  * particle or body. They may use each other in any order.
  *
  * All names are collected first. Then the expressions are parsed in topological order by a depth-first search with an
  * explicit stack. An expression that meets unparsed names pushes them and is parsed again after them, so that most are
  * parsed at most twice. An expression that waits for an ACTIVE one closes a cycle, which is reported.
+ *
+ * The text of an <output> is such an expression, too, but is parsed only where others use it; see definitions_parse_now().
  */
 #pragma once
 
@@ -34,8 +36,11 @@ struct Loop {
   const struct Loop *outer; /* next enclosing one; NULL for none */
 };
 
-/* UNREAD: not yet parsed. ACTIVE: waits for other expressions. READ: parsed, and its value is known. */
-enum DefinitionState { UNREAD, ACTIVE, READ };
+/*
+ * UNREAD: not yet parsed. ACTIVE: waits for other expressions. READ: parsed, and its value is known. TAKEN: READ, and
+ * its element has been read.
+ */
+enum DefinitionState { UNREAD, ACTIVE, READ, TAKEN };
 
 /* A named expression, with the loops around it and its state. */
 struct Definition {
@@ -53,6 +58,8 @@ struct Definitions {
   const struct Loop *present; /* innermost <for> during collection; NULL for none */
   size_t *stack;              /* indices of items to be parsed, the current one on top */
   size_t stack_count, waiting;
+  void (*parse)(void *reader, size_t number); /* parses an item, and those that it needs */
+  void *reader;
 };
 
 /* Returns an empty collection. */
@@ -74,6 +81,12 @@ void definitions_push(struct Definitions *definitions, size_t number);
 
 /* True if the name is that of an expression that has not been parsed. The current expression then waits for it. */
 bool definitions_wait_for(struct Definitions *definitions, const char *name);
+
+/* Parses an expression outside of the stack, as an <output> that a force uses. False if none of this name is unparsed. */
+bool definitions_parse_now(struct Definitions *definitions, const char *name);
+
+/* True if the expression of this element, under this name, has been parsed; false if it is asked for once more. */
+bool definitions_take(struct Definitions *definitions, const char *name, const xmlNode *node);
 
 /* True if an expression of this name was collected; false if there are no definitions. */
 bool definitions_contain(const struct Definitions *definitions, const char *name);
