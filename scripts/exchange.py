@@ -5,12 +5,38 @@ FMPy holds inputs over a step of CVODE. Here setTime of the FMU also sets the in
 """
 
 import shutil
+import sys
+from contextlib import contextmanager
 
 import numpy as np
 from fmpy import extract, simulate_fmu
+from fmpy.fmi1 import FMICallException
 from fmpy.simulation import instantiate_fmu
 
 from .co_simulation import NEAR, Slave
+
+
+class Failed(Exception):
+    """CVODE stopped."""
+
+
+@contextmanager
+def failures():
+    """Raise Failed where CVODE of FMPy fails; the FMU has logged why. Python prints no calls that failed in a callback."""
+
+    def without_calls(unraisable, hook=sys.unraisablehook):
+        if not isinstance(unraisable.exc_value, FMICallException):
+            hook(unraisable)
+
+    before, sys.unraisablehook = sys.unraisablehook, without_calls
+    try:
+        yield
+    except Exception as failure:
+        if type(failure) not in (Exception, RuntimeError):  # those of FMPy
+            raise
+        raise Failed(str(failure)) from None
+    finally:
+        sys.unraisablehook = before
 
 
 class Followed(Slave):
@@ -51,9 +77,9 @@ def exchange(archive, description, start_values, signals, output, interval, star
         try:
             if table is not None:
                 Followed(fmu, description, signals, table)
-            return simulate_fmu(
-                folder, fmi_type="ModelExchange", start_values=start_values, input=table, output=output, model_description=description, fmu_instance=fmu, **times, **options
-            )
+            words = {"start_values": start_values, "input": table, "output": output, "model_description": description, "fmu_instance": fmu}
+            with failures():
+                return simulate_fmu(folder, fmi_type="ModelExchange", **words, **times, **options)
         finally:
             fmu.freeInstance()
     finally:

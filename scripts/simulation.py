@@ -19,7 +19,7 @@ from fmpy.model_description import ModelDescription
 from numpy.lib.recfunctions import repack_fields
 
 from .co_simulation import EVENTS, OPTIONS, Interrupted, co_simulate
-from .exchange import exchange
+from .exchange import Failed, exchange
 from .feedback import is_feedback
 from .live_page.description import read_tree, scene_of, variables_of_scene
 from .live_page.page import page_of_motion
@@ -170,7 +170,7 @@ def simulate(fmu, start, /, output=None, input=None, hold=False, fmi_type="CoSim
             values = co_simulate(fmu, description, start, signals, recorded, step, begin, stop, tolerance, feedback=feedback, **options)
         else:
             values = exchange(fmu, description, start, signals, recorded, step, begin, stop, **options)
-    except FMICallException as problem:
+    except (FMICallException, Failed) as problem:
         raise Problem(_failure_message(fmu, problems, problem)) from None
     except Interrupted as interrupted:
         raise Unfinished(_failure_message(fmu, problems, interrupted), motion_with(interrupted.reached)) from None

@@ -28,7 +28,7 @@ from .progress import Progress
 from .quantities import number_of
 from .simulation import described
 from .sweep_records import VALUE, check_log, records_of, times_of
-from .variables import settable, units_of, unsettable_reason
+from .variables import settable, units_of, unsettable_reason, whole_kind
 from .whole_files import replace
 
 try:
@@ -50,8 +50,8 @@ def known_name(name, description):
         return name
     if name.endswith("0") and name[:-1] in names:
         return name[:-1]
-    what = f"'{name}' has no start value in {description.modelName}{unsettable_reason(name, description)}"
-    raise Problem(f"{what}; these have one: {', '.join(names)}")
+    what = "does not vary in a sweep of" if whole_kind(name, description) else "has no start value in"
+    raise Problem(f"'{name}' {what} {description.modelName}{unsettable_reason(name, description)}; {'these do' if whole_kind(name, description) else 'these have one'}: {', '.join(names)}")
 
 
 def in_unit(name, values, unit):

@@ -8,6 +8,8 @@ from collections.abc import Iterable, Mapping
 from numbers import Real
 from pathlib import Path
 
+import numpy as np
+
 from .problem import Problem
 from .quantities import numbers_of, truth_of
 
@@ -40,8 +42,17 @@ def start_values(description):
     return found
 
 
+def whole_kind(name, description):
+    """Return "an Integer" or "a Boolean" for a variable of this type that has a start value; None for others."""
+    kinds = [v.type for v in description.modelVariables if v.name == name and v.start is not None]
+    return {"Boolean": "a Boolean", "Integer": "an Integer", "Int32": "an Integer", "Int64": "an Integer"}.get(kinds[0]) if kinds else None
+
+
 def unsettable_reason(name, description):
     """Return the end of a message that explains why a variable cannot be set; "" if no explanation is needed."""
+    kind = whole_kind(name, description)
+    if kind:
+        return f", as it is {kind}"
     calculated = [v.name for v in description.modelVariables if v.causality == "calculatedParameter"]
     return ", as it follows from other parameters" if name in calculated else ""
 
@@ -108,19 +119,29 @@ def pairs_by_name(given):
     if not isinstance(bounds, Mapping):
         raise Problem(f"bounds is {bounds!r}; expected a dict of pairs by name, such as {{'l': (0.5, 2)}}")
     for name, pair in bounds.items():
-        if isinstance(pair, str) or not isinstance(pair, Iterable) or len(list(pair)) != 2:
+        if isinstance(pair, (str, Mapping, set)) or not isinstance(pair, Iterable) or len(list(pair)) != 2:
             raise Problem(f"bounds has {pair!r} for '{name}'; expected a pair (LOW, HIGH)")
     return dict(bounds)
 
 
 def names_of(given, what):
-    """Return a list of names, which may be given as a single name; raise Problem if one is not a text."""
+    """Return a list of names, which may be given as a single name; raise Problem if one is not a text, or is given twice."""
     if isinstance(given, str):
         return [given]
     names = list(given) if isinstance(given, Iterable) else [given]
     for name in names:
         if not isinstance(name, str):
             raise Problem(f"{what} has {name!r}; expected names of variables")
+        if names.count(name) > 1:
+            raise Problem(f"'{name}' is given twice in {what}; expected each name once")
+    return names
+
+
+def some_names(given, what):
+    """Return names as names_of() does; raise Problem if there are none."""
+    names = names_of(given, what)
+    if not names:
+        raise Problem(f"{what} is empty; expected one name at least")
     return names
 
 
@@ -146,4 +167,9 @@ def checked_start(start, description, free=None, arguments=()):
         if name not in free:
             near = nearest(name, free) or nearest(name, arguments)
             raise Problem(f"'{name}' is not a variable of {description.modelName}; {suggestion(name, [near] if near else free, 'these can be')}")
-    return numbers_of({name: truth_of(variables[name], value) for name, value in start.items()}, units_of(description))
+    numbers = numbers_of({name: truth_of(variables[name], value) for name, value in start.items()}, units_of(description))
+    for name, value in numbers.items():
+        kind = whole_kind(name, description)
+        if kind and not all(number in (0, 1) if kind == "a Boolean" else number % 1 == 0 for number in np.ravel(value)):
+            raise Problem(f"'{name}' is set to {start[name]!r}; expected {'True or False' if kind == 'a Boolean' else 'a whole number'}")
+    return numbers

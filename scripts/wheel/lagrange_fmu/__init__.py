@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from .calls import checked
 from .problem import Problem
-from .variables import suggestion, names_of, numbers_by_name, pairs_by_name
+from .variables import suggestion, names_of, numbers_by_name, pairs_by_name, some_names
 
 if TYPE_CHECKING:
     import numpy as np
@@ -262,6 +262,8 @@ def linearize(
     """
     from .linearization import linearize
 
+    for name in {*(at or {})} & {*(parameters or {})}:
+        raise Problem(f"'{name}' is in at and in parameters; expected it once")
     return linearize(system, numbers_by_name(at, "at") | numbers_by_name(parameters, "parameters"))
 
 
@@ -312,7 +314,7 @@ def sensitivities(
     """
     from .variational import sensitivities
 
-    return sensitivities(system, names_of(of, "of"), names_of(by, "by"), times, numbers_by_name(start_values), tolerance)
+    return sensitivities(system, some_names(of, "of"), some_names(by, "by"), times, numbers_by_name(start_values), tolerance)
 
 
 @checked

@@ -19,6 +19,7 @@ from .problem import Problem
 from .quantities import numbers_of
 from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
 from .stepping import Steps
+from .variables import some_names
 
 from scipy.integrate import OdeSolution  # isort: skip
 
@@ -203,7 +204,7 @@ def gradient(system, of, by, stop_time, data, integral, noise, start_values, tol
     check_tolerance(tolerance)
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
         objective = _objective(point, of, data, stop_time, integral, numbers_of(noise, point.units))
-        check_names(point, objective.of, by)
+        check_names(point, objective.of, some_names(by, "by"))
         acting = acting_of(point, by)
         start, slopes = start_slopes(point, by, {})
         motion = RecordedMotion(point, objective.of, [reference for references in acting for reference in references], tolerance)

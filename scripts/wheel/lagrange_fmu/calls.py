@@ -2,6 +2,7 @@
 
 import functools
 import inspect
+import math
 import os
 from numbers import Integral, Real
 
@@ -40,8 +41,12 @@ def _checked_value(name, value, annotation):
         value = number_of(name, value, "s")
         if not _is_number(value):
             raise Problem(f"{name} is {value!r}; expected a number of seconds, or a text such as '3s'")
+        if not math.isfinite(value):
+            raise Problem(f"{name} is {value!r}; expected a finite number of seconds")
     if name in NUMBERS and not _is_number(value):
         raise Problem(f"{name} is {value!r}; expected a number")
+    if name == "tolerance" and not 0 < value < 1:
+        raise Problem(f"the tolerance is {value!r}; expected one between 0 and 1")
     if annotation in ("str", "str | None") and not isinstance(value, str):
         raise Problem(f"{name} is {value!r}; expected a text")
     if annotation == "bool" and not isinstance(value, Integral):

@@ -156,6 +156,8 @@ class _Search:
 def fit(system, data, vary, start_values, bounds, noise, each, loss="linear"):
     """See lagrange_fmu.fit."""
     sets = list(data) if isinstance(data, (list, tuple)) else [data]
+    if not sets:
+        raise Problem("data is empty; expected the measurements of one experiment at least")
     vary, each = list(vary), list(each)
     if not vary and not each:
         raise Problem("nothing varies; expected the names of parameters or start values")
@@ -172,6 +174,9 @@ def fit(system, data, vary, start_values, bounds, noise, each, loss="linear"):
         point = stack.enter_context(followed(system, dict(start_values), [*vary, *each]))
         noise = numbers_of(noise, point.units)
         bounds = {name: tuple(number_of(name, end, point.units.get(name, "1"), is_limit=True) for end in ends) for name, ends in bounds.items()}
+        for name, (low, high) in bounds.items():
+            if not low < high:
+                raise Problem(f"the bounds of '{name}' are {low:g} and {high:g}; expected two numbers, the smaller one first")
         steppers = []
 
         def stepper():

@@ -14,6 +14,7 @@ from .differences import relevant, rules_within
 from .problem import Problem
 from .saltation import Saltation, crossing_of
 from .stepping import Steps
+from .variables import whole_kind
 
 INTERVALS = 8  # intervals of a step in which the event indicators are compared; a double crossing within one is missed
 STEP = 1e-3  # relative, of differences through initialization
@@ -253,5 +254,8 @@ def check_names(point, of, by):
     check_once(by)
     for names, among, what in ((of, {*point.outputs, *point.derivatives, *point.states}, "an output, a state or its derivative"), (by, {*point.settable}, "a parameter, a start value or an input")):
         for name in names:
+            kind = whole_kind(name, point.description)
+            if kind:
+                raise Problem(f"'{name}' is {kind}, which has no derivatives; expected some of {', '.join(sorted(among))}")
             if name not in among:
                 raise Problem(f"'{name}' is not {what}; these are: {', '.join(sorted(among))}")

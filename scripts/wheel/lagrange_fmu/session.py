@@ -88,21 +88,27 @@ class Simulation(NamedValues):
             raise Problem(f"{self.description.modelName} {what}: {'; '.join(dict.fromkeys(self._problems)) or problem}") from None
 
     def _initialize(self, start_values):
+        self._lacks_start = ""
         self._slave.initialize(start_values, None, self._begin, None, self._tolerance)
         self._slave.begin()
         self.time = self._begin
+
+    def _check_started(self):
+        self._check_open()
+        if self._lacks_start:
+            raise Problem(f"{self.description.modelName} has not started, since {self._lacks_start}; expected reset() with other start values")
 
     def _check_open(self):
         if self.fmu is None:
             raise Problem(f"the simulation of {self.description.modelName} is closed; expected lagrange_fmu.start(...) again")
 
     def __getitem__(self, name):
-        self._check_open()
+        self._check_started()
         with self._named(f"has no value of {name!r}"):
             return super().__getitem__(name)
 
     def __setitem__(self, name, value):
-        self._check_open()
+        self._check_started()
         variable = self.variable(name)
         self._check_settable(variable)
         numbers = numbers_for(variable, value)
@@ -119,7 +125,7 @@ class Simulation(NamedValues):
 
     def step(self, length):
         """Advance by a length in s, with constant inputs. Raise Problem if the step fails; then the time is unchanged, and restore() and reset() are possible."""
-        self._check_open()
+        self._check_started()
         length = number_of("the step", length, "s")
         if not (isinstance(length, Real) and 0 < length < math.inf):
             raise Problem(f"the step is {length!r}; expected a positive number of seconds")
@@ -132,7 +138,7 @@ class Simulation(NamedValues):
 
     def save(self):
         """Return the State for restore()."""
-        self._check_open()
+        self._check_started()
         check_ability(self.description)
         with self._named("cannot save its state"):
             return State(self.time, self.description.guid, (content3 if self._is_third else content2)(self.fmu))
@@ -143,15 +149,20 @@ class Simulation(NamedValues):
         check_state(state, self.description)
         with self._named("cannot restore the state"):
             (go_to3 if self._is_third else go_to2)(self.fmu, state.content)
+        self._lacks_start = ""
         self.time = state.time
 
     def reset(self, start_values=None, /, **values):
         """Start again; these start values replace those of start()."""
         self._check_open()
         start_values = self._checked(numbers_by_name(start_values) | numbers_by_name(values))
-        with self._named("cannot start"):
-            self.fmu.reset()
-            self._initialize(self._start | start_values)
+        try:
+            with self._named("cannot start"):
+                self.fmu.reset()
+                self._initialize(self._start | start_values)
+        except Problem as problem:
+            self._lacks_start = str(problem)
+            raise
 
     def close(self):
         self._close()
