@@ -109,7 +109,11 @@ const char *bdf_advance(struct Instance *instance, const struct CommunicationSte
   if (CVodeSetMaxStep(bdf->cvode, longest_step(step)) < 0) return "CVODE failed to set the longest step";
   const char *problem = lagrangian.taylor.limit == NULL ? NULL : limit_by_functions(instance, bdf, before, step->end);
   if (problem != NULL) return problem;
+  double made = 0.0;
   if (CVode(bdf->cvode, step->end, bdf->sundials.state, &time, CV_ONE_STEP) < 0) return "steps were rejected too often";
+  if (CVodeGetLastStep(bdf->cvode, &made) < 0) return "CVODE failed to return its last step";
+  /* CVODE accepts steps that are too short to change the time, as where a root ends. */
+  if (made > 0.0 && before + made == before) return solver_resting;
   fmu_state->last_step = (struct Span){before, time};
   fmu_state->statistics[STATISTIC_STEPS]++;
   return NULL;
