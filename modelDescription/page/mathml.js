@@ -11,7 +11,7 @@ const LONGEST = 3000; // characters of an equation; longer ones stay texts
 
 const GREEK = Object.fromEntries(
   ("alpha α beta β gamma γ delta δ epsilon ε zeta ζ eta η theta θ kappa κ lambda λ mu μ nu ν xi ξ pi π rho ρ sigma σ tau τ phi φ chi χ psi ψ " +
-    "omega ω Gamma Γ Delta Δ Theta Θ Lambda Λ Sigma Σ Phi Φ Psi Ψ Omega Ω").match(/\w+ \S/g).map(pair => pair.split(" ")),
+    "omega ω Gamma Γ Delta Δ Theta Θ Lambda Λ Xi Ξ Pi Π Sigma Σ Phi Φ Psi Ψ Omega Ω").match(/\w+ \S/g).map(pair => pair.split(" ")),
 );
 const UPRIGHT = new Set(["sin", "cos", "tan", "sinh", "cosh", "tanh"]); // functions of a name without parentheses
 const DOTS = ["", "˙", "¨"];
@@ -63,9 +63,12 @@ function setNumber(word) {
 const standsAsFactor = ({ kind }) => !["sum", "negative", "condition"].includes(kind);
 const standsAsBase = ({ kind }) => ["number", "name", "call", "ellipsis"].includes(kind);
 
+// True for sin²(...).
+const isPowerOfFunction = ({ kind, parts }) => kind === "power" && parts[1].kind === "number" && parts[0].kind === "call" && UPRIGHT.has(parts[0].word);
+
 // True for sin x and sin² x, whose argument is a name.
-function standsBare({ kind, word, parts }) {
-  if (kind === "power") return parts[0].kind === "call" && parts[1].kind === "number" && standsBare(parts[0]);
+function standsBare(formula) {
+  const { kind, word, parts } = isPowerOfFunction(formula) ? formula.parts[0] : formula;
   return kind === "call" && parts.length === 1 && parts[0].kind === "name" && UPRIGHT.has(word);
 }
 
@@ -104,6 +107,7 @@ function setCases(formula) {
 }
 
 const setArguments = parts => parts.map(set).join("<mo>,</mo>");
+const argumentsOf = ({ parts, isTall }) => inParentheses(setArguments(parts), isTall);
 
 // Typesets der(x) and der(der(x)) with dots, and other time derivatives as d/dt.
 function setDerivative({ parts: [inside] }) {
@@ -123,17 +127,23 @@ const CALLS = {
 function setCall(formula) {
   if (isChoice(formula)) return setCases(formula);
   if (Object.hasOwn(CALLS, formula.word)) return CALLS[formula.word](formula);
-  return `<mrow>${setFunction(formula.word)}${APPLIED}${inParentheses(setArguments(formula.parts), formula.isTall)}</mrow>`;
+  return setFunctionOf(formula, argumentsOf);
 }
 
-// Typesets sin x or sin² x.
-function setBare(formula) {
+// Typesets a function, or a power of one, with its argument by a typesetting function.
+function setFunctionOf(formula, argument) {
   const call = formula.kind === "power" ? formula.parts[0] : formula, word = setFunction(call.word);
   const head = call === formula ? word : `<msup>${word}${set(formula.parts[1])}</msup>`;
-  return `<mrow>${head}${APPLIED}${THIN}${set(call.parts[0])}</mrow>`;
+  return `<mrow>${head}${APPLIED}${argument(call)}</mrow>`;
 }
 
-const setPower = ({ parts: [base, exponent] }) => `<msup><mrow>${fenced(base, standsAsBase, set)}</mrow><mrow>${set(exponent)}</mrow></msup>`;
+const setBare = formula => setFunctionOf(formula, call => THIN + set(call.parts[0]));
+
+function setPower(formula) {
+  const [base, exponent] = formula.parts;
+  if (isPowerOfFunction(formula)) return setFunctionOf(formula, argumentsOf);
+  return `<msup><mrow>${fenced(base, standsAsBase, set)}</mrow><mrow>${set(exponent)}</mrow></msup>`;
+}
 
 // Typesets a factor of a product; only trailing functions stand without parentheses, as other factors must not follow these.
 function setFactor(factors, i) {

@@ -1,4 +1,4 @@
-"""Print a listing as a LaTeX document, which needs amsmath alone."""
+"""Print a listing as a LaTeX document, which needs amsmath alone, by the rules of the pages' script, modelDescription/page/mathml.js."""
 
 import ast
 import re
@@ -7,7 +7,10 @@ from .expression import Expression, is_cut, operands, terms, without_sign
 from .listing import Equation, Step
 
 GREEK = "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split()
-FUNCTIONS = {"sin", "cos", "tan", "sinh", "cosh", "tanh", "log", "exp", "min", "max"}
+UPRIGHT = ("sin", "cos", "tan", "sinh", "cosh", "tanh")  # functions of a name without parentheses
+OPERATORS = {*UPRIGHT, "log", "exp", "min", "max"}  # functions that LaTeX knows
+DOTS = ("%s", r"\dot{%s}", r"\ddot{%s}")
+CALLS = {"der": r"\frac{\mathrm{d}}{\mathrm{d} t} %s", "diff": r"\frac{\partial %s}{\partial %s}", "sqrt": r"\sqrt{%s}", "abs": r"\left| %s \right|"}
 LINE = 75  # characters of a line of an equation, about
 
 # Characters of texts that have a special meaning in LaTeX, or none.
@@ -20,27 +23,33 @@ def plain(text):
     return "".join(SPECIAL.get(letter, letter if letter.isascii() else "?") for letter in text)
 
 
-def letters(word):
-    """Return a word as a symbol: a Greek letter, one letter, or upright letters."""
-    if word in GREEK:
-        return f"\\{word}"
-    return plain(word) if len(word) == 1 else rf"\mathrm{{{plain(word)}}}"
+def upright(text):
+    return rf"\mathrm{{{plain(text)}}}"
 
 
 def symbol(name, dots=0):
-    """Return a name as in print: theta1 and theta[1] with an index, motor.omega with that of its part."""
-    *part, last = re.split(r"\.(?![^\[]*\])", name)
-    word, bracket = re.fullmatch(r"([^\[]*)((?:\[.*\])?)", last).groups()
-    word, number = re.fullmatch(r"(.*?)(\d*)", word).groups() if not bracket else (word, "")
-    if not word or word.endswith("_"):
-        word, number = word + number, ""
-    indices = [number, bracket.strip("[]")]
-    camel = re.fullmatch(rf"({'|'.join(sorted(GREEK, key=len, reverse=True))})([A-Z].*)", word)
-    base, *index = camel.groups() if camel else word.split("_", 1) if "_" in word[1:-1] else [word]
-    indices = [rf"\mathrm{{{plain(text)}}}" if not text.isdigit() else text for text in [*index, *indices, ".".join(part)] if text]
-    accent = ("", r"\dot{%s}", r"\ddot{%s}")[dots]
-    base = accent % letters(base) if dots else letters(base)
-    return base + (f"_{{{', '.join(indices)}}}" if indices else "")
+    """Return a name as a base and its indices: theta1 and theta[1] with a number, motor.omega with the part of the system, loop.force as F."""
+    part, last = re.fullmatch(r"(?:(.*)\.)?([^.]*)", name).groups()
+    word, *bracket = re.split(r"[\[\]]", last)[:2]
+    stem, digits = (word, "") if bracket or re.search(r"(^|_)\d+$", word) else re.fullmatch(r"(.*?)(\d*)", word).groups()
+    split = re.fullmatch(rf"({'|'.join(GREEK)})([A-Z].*)", stem) or re.fullmatch(r"(.[^_]*)_(.+)", stem)
+    base, *index = split.groups() if split else [stem]
+    if part and last == "force":
+        base = "F"
+    letter = DOTS[dots] % (f"\\{base}" if base in GREEK else base if len(base) == 1 else upright(base))
+    indices = [text if text[0].isdigit() else upright(text) for text in [*index, digits, *bracket, part] if text]
+    return letter + (f"_{{{', '.join(indices)}}}" if indices else "")
+
+
+def number(value):
+    """Return a number; the ratio that one with many digits stands for, as in integrals."""
+    mantissa, _, exponent = f"{value!r}".partition("e")
+    if len(mantissa) >= 14 and not exponent:
+        for below in range(3, 46):
+            above = round(value * below)
+            if above >= 1 and abs(value * below - above) <= 1e-13 * above:
+                return rf"\frac{{{above}}}{{{below}}}"
+    return mantissa + (rf" \cdot 10^{{{int(exponent)}}}" if exponent else "")
 
 
 def fence(text):
@@ -48,108 +57,92 @@ def fence(text):
     return rf"\left({text}\right)" if re.search(r"\\frac|\\begin", text) else f"({text})"
 
 
+def is_operation(node, *operators):
+    return isinstance(node, ast.BinOp) and isinstance(node.op, operators)
+
+
+def is_sum(node):
+    """True for what needs parentheses as a factor or a term."""
+    return isinstance(node, (ast.UnaryOp, ast.Compare)) or is_operation(node, ast.Add, ast.Sub) or without_sign(node)[0] == "-"
+
+
 class Printer:
     def __init__(self, expression, multipliers):
-        self.expression = expression
+        self.name_of = expression.name
         self.multipliers = multipliers
-        self.bare = True
 
     def name(self, node):
-        name = self.expression.name(node)
-        dots = 0
+        name, dots = self.name_of(node), 0
         while name.startswith("der("):
             name, dots = name[4:-1], dots + 1
-        if name in self.multipliers:
-            return rf"\lambda_{{\mathrm{{{plain(self.multipliers[name])}}}}}"
-        return symbol(name, dots)
+        return symbol(re.sub("force$", "lambda", name) if name in self.multipliers else name, dots)
 
-    def number(self, value):
-        mantissa, _, exponent = f"{value!r}".partition("e")
-        return mantissa + (rf"\cdot 10^{{{int(exponent)}}}" if exponent else "")
+    def function(self, node):
+        """Return the name of a function, or of a power of a trigonometric one, and its arguments; None for other formulas."""
+        is_power = is_operation(node, ast.Pow) and isinstance(node.right, ast.Constant) and isinstance(node.left, ast.Call)
+        call = node.left if is_power else node
+        word = self.name_of(call.func) if isinstance(call, ast.Call) else ""
+        if not word or word in (*CALLS, "if") or (is_power and word not in UPRIGHT):
+            return None
+        return (f"\\{word}" if word in OPERATORS else rf"\operatorname{{{plain(word)}}}") + (f"^{{{number(node.right.value)}}}" if is_power else ""), call.args
 
-    def fenced(self, node, needed):
-        return fence(self.print(node)) if needed else self.print(node)
+    def is_bare(self, node):
+        """True for sin x and its powers, whose argument is a name."""
+        function = self.function(node)
+        return function is not None and function[0][1:].split("^")[0] in UPRIGHT and isinstance(function[1][0], ast.Name)
 
-    def is_sum(self, node):
-        if isinstance(node, ast.BinOp) and without_sign(node)[0] == "-":
-            return True
-        return isinstance(node, ast.UnaryOp) or isinstance(node, ast.Compare) or (isinstance(node, ast.BinOp) and isinstance(node.op, (ast.Add, ast.Sub)))
-
-    def is_call(self, node):
-        """True for a function, and for a power of one."""
-        return isinstance(node, ast.Call) or (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Pow) and self.is_call(node.left))
+    def factor(self, node, is_bare=False):
+        """Return a factor or a term, with the parentheses that it needs."""
+        function = self.function(node)
+        if function is None:
+            return fence(self.print(node)) if is_sum(node) else self.print(node)
+        arguments = ", ".join(map(self.print, function[1]))
+        return function[0] + (f" {arguments}" if is_bare else fence(arguments))
 
     def product(self, node):
-        parts, factors = [], operands(node, ast.Mult)
+        """Return a product, in which functions stand without parentheses only where no other factor follows."""
+        text, factors = "", operands(node, ast.Mult)
         for i, factor in enumerate(factors):
             first = factor
-            while isinstance(first, ast.BinOp):
+            while is_operation(first, ast.Mult, ast.Div, ast.Pow):
                 first = first.left
-            self.bare = all(map(self.is_call, factors[i:]))  # sin x only where nothing but functions follows
-            text = self.fenced(factor, self.is_sum(factor))
-            self.bare = True
-            parts.append((r" \cdot " if parts and isinstance(first, ast.Constant) else r" \, " if parts else "") + text)
-        return "".join(parts)
-
-    def argument(self, node):
-        """Return the argument of a function, in parentheses unless it is a name."""
-        return f" {self.print(node)}" if isinstance(node, ast.Name) and self.bare else fence(self.print(node))
-
-    def power(self, node):
-        exponent = self.print(node.right)
-        if isinstance(node.left, ast.Call) and self.expression.name(node.left.func) in FUNCTIONS - {"min", "max", "exp"}:
-            return self.call(node.left, f"^{{{exponent}}}")
-        return f"{self.fenced(node.left, not isinstance(node.left, (ast.Name, ast.Constant)))}^{{{exponent}}}"
+            times = r" \cdot " if isinstance(first, ast.Constant) else r" \, "
+            text += (times if i > 0 else "") + self.factor(factor, all(map(self.is_bare, factors[i:])))
+        return text
 
     def cases(self, node):
-        condition, value, other = node.args
-        rows = [rf"{self.print(value)} & \text{{if }} {self.print(condition)}"]
-        while isinstance(other, ast.Call) and self.expression.name(other.func) == "if":
-            condition, value, other = other.args
+        rows = []
+        while isinstance(node, ast.Call) and self.name_of(node.func) == "if":
+            condition, value, node = node.args
             rows.append(rf"{self.print(value)} & \text{{if }} {self.print(condition)}")
-        return r"\begin{cases} " + r" \\ ".join([*rows, rf"{self.print(other)} & \text{{else}}"]) + r" \end{cases}"
+        return r"\begin{cases} " + r" \\ ".join([*rows, rf"{self.print(node)} & \text{{else}}"]) + r" \end{cases}"
 
-    def call(self, node, power=""):
-        function, arguments = self.expression.name(node.func), node.args
-        if function == "if":
-            return self.cases(node)
-        if function == "diff":
-            return r"\frac{\partial %s}{\partial %s}" % tuple(map(self.print, arguments))
-        if function == "der":
-            return rf"\frac{{\mathrm{{d}}}}{{\mathrm{{d}} t}} {self.print(arguments[0])}"
-        if function == "sqrt":
-            return rf"\sqrt{{{self.print(arguments[0])}}}"
-        if function == "abs":
-            return rf"\left| {self.print(arguments[0])} \right|"
-        name = f"\\{function}" if function in FUNCTIONS else rf"\operatorname{{{plain(function)}}}"
-        if len(arguments) == 1 and function in FUNCTIONS:
-            return f"{name}{power}{self.argument(arguments[0])}"
-        return f"{name}{power}{fence(', '.join(map(self.print, arguments)))}"
+    def call(self, node):
+        word = self.name_of(node.func)
+        return self.cases(node) if word == "if" else CALLS[word] % tuple(map(self.factor if word == "der" else self.print, node.args))
 
     def print(self, node):
         if isinstance(node, ast.Name):
             return self.name(node)
         if isinstance(node, ast.Constant):
-            return self.number(node.value)
-        if isinstance(node, ast.Call):
-            return self.call(node)
+            return number(node.value)
         if isinstance(node, ast.Compare):
             return f"{self.print(node.left)} > {self.print(node.comparators[0])}"
-        if self.is_sum(node):
+        if is_sum(node):
             return " ".join(self.terms(node))
+        if self.function(node):
+            return self.factor(node, self.is_bare(node))
+        if isinstance(node, ast.Call):
+            return self.call(node)
         if isinstance(node.op, ast.Pow):
-            return self.power(node)
-        if isinstance(node.op, ast.Div):
-            return rf"\frac{{{self.print(node.left)}}}{{{self.print(node.right)}}}"
-        return self.product(node)
+            base = self.print(node.left)
+            return f"{base if isinstance(node.left, (ast.Name, ast.Constant)) or self.function(node.left) else fence(base)}^{{{self.print(node.right)}}}"
+        return rf"\frac{{{self.print(node.left)}}}{{{self.print(node.right)}}}" if isinstance(node.op, ast.Div) else self.product(node)
 
     def terms(self, node):
         """Return the terms with their signs."""
-        found = []
-        for sign, term in terms(node):
-            text = self.fenced(term, self.is_sum(term))
-            found.append(f"{sign} {text}" if found else text if sign == "+" else f"-{text}")
-        return found
+        found = [(sign, self.factor(term, self.is_bare(term))) for sign, term in terms(node)]
+        return [("" if sign == "+" else "-") + text if i == 0 else f"{sign} {text}" for i, (sign, text) in enumerate(found)]
 
 
 def formula(text, multipliers=()):
@@ -163,26 +156,18 @@ def length(part):
     return len(re.sub(r"\\(left|right|frac|mathrm|operatorname|dot|,)|[{}\\ ]", "", part))
 
 
-def rows(parts):
-    """Join terms to lines of about LINE letters."""
-    lines, room = [], 0
-    for part in parts:
-        if length(part) > room:
-            lines.append([])
-            room = LINE
-        lines[-1].append(part)
-        room -= length(part)
-    return [" ".join(line) for line in lines]
-
-
 def equation(entry, multipliers):
-    left, right = rows(formula(entry.left, multipliers)), rows(formula(entry.right, multipliers))
-    if len(left) == 1 and length(left[0]) + length(right[0]) <= LINE:
-        lines = [f"{left[0]} & = {right[0]}"]
-    else:
-        lines = [f"& {left[0]}", *(rf"& \quad {line}" for line in left[1:]), f"& \\qquad = {right[0]}"]
-    lines += [rf"& \qquad {line}" for line in right[1:]]
-    return [r"\begin{align*}", *(f"  {line} \\\\" for line in lines[:-1]), f"  {lines[-1]}", r"\end{align*}"]
+    """Return an equation, with line breaks between terms."""
+    right = formula(entry.right, multipliers)
+    lines, room = [], 0
+    for part in [*formula(entry.left, multipliers), f"= {right[0]}", *right[1:]]:
+        if lines and length(part) <= room:
+            lines[-1] += f" {part}"
+        else:
+            lines.append((r"& \quad " if lines else "& ") + part)
+            room = LINE
+        room -= length(part)
+    return [r"\begin{align*}", " \\\\\n".join(lines), r"\end{align*}"]
 
 
 def latex_of(listing):

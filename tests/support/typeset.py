@@ -10,9 +10,9 @@ from chromium import look_at
 
 XHTML = "{http://www.w3.org/1999/xhtml}"
 MATHML = "{http://www.w3.org/1998/Math/MathML}"
-GREEK = dict(zip("αβγδεζηθκλμνξπρστφχψωΓΔΘΛΣΦΨΩ",
+GREEK = dict(zip("αβγδεζηθκλμνξπρστφχψωΓΔΘΛΞΠΣΦΨΩ",
                  "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi psi omega "
-                 "Gamma Delta Theta Lambda Sigma Phi Psi Omega".split()))  # fmt: skip
+                 "Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split()))  # fmt: skip
 FUNCTIONS = {name: getattr(np, name) for name in "sin cos tan sinh cosh tanh exp log sqrt abs sign".split()}
 FUNCTIONS |= dict(pow=pow, asin=np.arcsin, acos=np.arccos, atan=np.arctan, asinh=np.arcsinh, acosh=np.arccosh, atanh=np.arctanh,
                   atan2=np.arctan2, min=min, max=max, erf=lambda x: x, gate=lambda condition, value, other: value if condition else other)  # fmt: skip
@@ -36,9 +36,9 @@ def infix(element):
         return {"˙": "der_", "¨": "der_der_"}[parts[1]] + parts[0]
     if tag == "mrow" and parts and parts[0] == parts[-1] == "|":
         return f"abs({''.join(parts[1:-1])})"
-    if tag == "mrow" and len(parts) == 4 and parts[1] == "apply":  # sin x, sin² x
-        power = re.fullmatch(r"\(\((\w+)\)\*\*\((\d+)\)\)", parts[0])
-        return f"({power[1]}({parts[3]})**{power[2]})" if power else f"{parts[0]}({parts[3]})"
+    if tag == "mrow" and parts[1:2] == ["apply"]:  # sin x, sin² x, sin²(x - y)
+        power, argument = re.fullmatch(r"\(\((\w+)\)\*\*\((\d+)\)\)", parts[0]), "".join(parts[2:])
+        return f"({power[1]}({argument})**{power[2]})" if power else f"{parts[0]}({argument})"
     parts = [part for part in parts if part not in ("apply", "{")]
     return {"⋅": "*", "\u2062": "*", "−": "-", "\u2061": "apply"}.get(element.text, GREEK.get(element.text, element.text or "")) + "".join(parts)
 
