@@ -32,13 +32,14 @@ function widthOfName(name) {
   return (base in GREEK ? 1 : base.length) + 0.7 * indices.join("").length;
 }
 
-// Typesets a name with 0, 1 or 2 dots for time derivatives.
-function setName(name, dots = 0) {
+// Typesets a name with 0, 1 or 2 dots for time derivatives; with an exponent above its indices, if it has any.
+function setName(name, dots = 0, exponent = "") {
   const { base, indices } = symbolOf(name), letter = `<mi>${GREEK[base] ?? base}</mi>`;
   const dotted = dots ? `<mover accent="true">${letter}<mo>${DOTS[dots]}</mo></mover>` : letter;
   if (indices.length === 0) return dotted;
   const index = text => (/^\d/.test(text) ? `<mn>${text}</mn>` : `<mtext>${text}</mtext>`);
-  return `<msub>${dotted}<mrow>${indices.map(index).join("<mo>,</mo>")}</mrow></msub>`;
+  const row = `<mrow>${indices.map(index).join("<mo>,</mo>")}</mrow>`;
+  return exponent ? `<msubsup>${dotted}${row}<mrow>${exponent}</mrow></msubsup>` : `<msub>${dotted}${row}</msub>`;
 }
 
 // * Returns the ratio that a number with at least 14 characters stands for, as integrals give them: a multiple of 1/3 .. 1/45 to 1e-13. Returns
@@ -142,6 +143,7 @@ const setBare = formula => setFunctionOf(formula, call => THIN + set(call.parts[
 function setPower(formula) {
   const [base, exponent] = formula.parts;
   if (isPowerOfFunction(formula)) return setFunctionOf(formula, argumentsOf);
+  if (base.kind === "name" && symbolOf(base.word).indices.length > 0) return setName(base.word, 0, set(exponent));
   return `<msup><mrow>${fenced(base, standsAsBase, set)}</mrow><mrow>${set(exponent)}</mrow></msup>`;
 }
 

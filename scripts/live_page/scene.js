@@ -5,6 +5,7 @@ const AXES = ["x", "y", "z"];
 const CORNERS = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) => [x, y, z]))); // signs of the coordinates of a box's corners
 const TRAIL_LENGTH = 240; // samples of a trail
 const FAR = 4; // times its own size: a system that travels further is followed by the view
+const GROWN = 6; // times its size at the start: the view ignores what comes after it, as of an unstable linear system
 const MOST_TRAILS = 8; // with more moving elements only the last one has a trail
 
 // True for a body in the plane, which has a single moment of inertia.
@@ -174,9 +175,11 @@ class Scene {
 
   // Returns the box that all samples fill. Along axes on which the system travels far beyond its own size, the view follows it.
   viewOf(samples, times) {
-    const boxes = samples.map((sample, k) => this.boxAt(sample, times[k])), all = new THREE.Box3(), point = new THREE.Vector3();
+    const whole = samples.map((sample, k) => this.boxAt(sample, times[k])), all = new THREE.Box3(), point = new THREE.Vector3();
+    const sizes = whole.map((box) => box.getSize(point).length()), grown = sizes.findIndex((size) => sizes[0] > 0 && size > GROWN * sizes[0]);
+    const boxes = grown > 0 ? whole.slice(0, grown) : whole;
     for (const box of boxes) all.union(box);
-    const own = Math.max(...boxes.map((box) => box.getSize(point).length())), extent = all.getSize(new THREE.Vector3());
+    const own = Math.max(...sizes.slice(0, boxes.length)), extent = all.getSize(new THREE.Vector3());
     this.followedAxes = [0, 1, 2].filter((axis) => own > 0 && extent.getComponent(axis) > FAR * own);
     this.start = boxes[0].getCenter(new THREE.Vector3());
     this.travelled = new THREE.Vector3();

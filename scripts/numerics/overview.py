@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 LEVELS = [1e-6, 1e-10]  # errors at which times are compared; the first one defines plot and colours
 OURS = {"shipped", "auto", "FMU"}
-COLOURS = {"SUNDIALS, same FMU": "#2a6f97", "SciPy": "#e09f3e", "FMPy CVode": "#8338ec", "CVODE in C": "#b07d4f", "heyoka": "#d62976", "exudyn": "#2d6a4f",
+COLOURS = {"SUNDIALS, same FMU": "#2a6f97", "SciPy": "#e09f3e", "FMPy CVode": "#8338ec", "CVODE in C": "#b07d4f", "Boost.Odeint": "#7a5c99", "heyoka": "#d62976", "exudyn": "#2d6a4f",
            "MuJoCo": "#0a9396"}  # fmt: skip
 NEVER = math.inf
 

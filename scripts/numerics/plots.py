@@ -12,9 +12,9 @@ COLOURS = {"shipped": "#c1121f", "taylor": "#f4a261", "erk": "#2a6f97", "bdf": "
 STIFF_COLOURS = {"auto": "#c1121f", "radau": "#5a6acf", "taylor": "#f4a261", "bdf": "#588157"}
 STYLES = ["-", "--", ":"]  # line styles of the ways of communication
 PEER_STYLES = {"SciPy DOP853": ("#e09f3e", "s"), "SciPy LSODA": ("#9c6644", "v"), "SciPy Radau": ("#6b705c", "^"), "FMPy CVode (model exchange)": ("#8338ec", "D"),
-               "heyoka": ("#d62976", "*"), "MuJoCo RK4": ("#0a9396", "P"), "MuJoCo Euler": ("#4cc9f0", "X"), "MuJoCo implicitfast": ("#4cc9f0", "X"),
+               "heyoka": ("#d62976", "*"), "Boost.Odeint Fehlberg 7(8), in C++": ("#7a5c99", "p"), "MuJoCo RK4": ("#0a9396", "P"), "MuJoCo Euler": ("#4cc9f0", "X"), "MuJoCo implicitfast": ("#4cc9f0", "X"),
                "exudyn generalized-alpha": ("#2d6a4f", "s"), "exudyn trapezoidal, index 2": ("#52b788", "v")}  # fmt: skip
-MARKERS = ["SciPy DOP853", "SciPy LSODA", "SciPy Radau", "FMPy CVode (model exchange)", "heyoka", "MuJoCo RK4", "MuJoCo Euler"]
+MARKERS = ["SciPy DOP853", "SciPy LSODA", "SciPy Radau", "FMPy CVode (model exchange)", "Boost.Odeint Fehlberg 7(8), in C++", "heyoka", "MuJoCo RK4", "MuJoCo Euler"]
 MECHANISM_STYLES = {"taylor": ("#c1121f", "o"), "radau": ("#5a6acf", "o")} | {
     peer: PEER_STYLES[peer] for peer in ("exudyn generalized-alpha", "exudyn trapezoidal, index 2", "MuJoCo RK4", "MuJoCo implicitfast")}  # fmt: skip
 SWITCHING_STYLES = {"FMU": ("#c1121f", "o"), "FMU, one step": ("#f4a261", "o"), "CVODE in C (model exchange)": ("#b07d4f", "D"),

@@ -287,7 +287,7 @@ def test_formulas_of_latex_are_read_by_mathtext(name):
 
 def latex_of_element(element):
     """Convert MathML of the page's script to LaTeX without spaces."""
-    tag, text, parts = element.tag.removeprefix(MATHML), element.text or "", [latex_of_element(child) for child in element]
+    tag, text, parts = element.tag.removeprefix(typeset.MATHML), element.text or "", [latex_of_element(child) for child in element]
     if tag in ("mi", "mtext", "mn"):
         if element.get("mathvariant") == "normal":
             return f"\\{text}" if text in latex.OPERATORS else rf"\mathrm{{{text}}}" if text == "d" else rf"\operatorname{{{text}}}"
@@ -301,9 +301,11 @@ def latex_of_element(element):
         return r"\begin{cases}" + r"\\".join("&".join(map(latex_of_element, row)) for row in element) + r"\end{cases}"
     if tag == "mover":
         return {"˙": r"\dot", "¨": r"\ddot"}[element[1].text] + f"{{{parts[0]}}}"
-    braced = "".join(f"{{{part}}}" for part in parts)
-    return {"mfrac": rf"\frac{braced}", "msqrt": rf"\sqrt{{{''.join(parts)}}}", "msub": "_".join([*parts[:1], braced.removeprefix(f"{{{parts[0]}}}" if parts else "")]),
-            "msup": "^".join([*parts[:1], braced.removeprefix(f"{{{parts[0]}}}" if parts else "")])}.get(tag, "".join(parts))  # fmt: skip
+    first, *braced = [*parts[:1], *(f"{{{part}}}" for part in parts[1:])] or [""]
+    scripts = {"msub": "_", "msup": "^", "msubsup": "_^"}
+    if tag in scripts:
+        return first + "".join(sign + part for sign, part in zip(scripts[tag], braced, strict=True))
+    return {"mfrac": rf"\frac{{{first}}}{''.join(braced)}", "msqrt": rf"\sqrt{{{''.join(parts)}}}"}.get(tag, "".join(parts))
 
 
 def spaceless(text):
@@ -340,7 +342,7 @@ def test_latex_is_what_pages_show(name, set_by_page):
 
 def test_forms_of_latex_are_those_of_pages(tmp_path, set_by_page):
     """Names with indices, ratios, powers, signs and functions."""
-    formulas = ["sin(a)^2", "sin(a - b_end)^2*cos(a)*time", "cos(a)*sin(a)^3", "omegaCoupler*XiTop/Pi2 - x[1]", "exp(a)*tanh(b_end)", "atan2(a, -b_end)", "(a - (b_end - 1))^(a + 1)", "-(a + 1)^2/(b_end*(a - 2))",
+    formulas = ["x[1]^2*b_end^-a", "sin(a)^2", "sin(a - b_end)^2*cos(a)*time", "cos(a)*sin(a)^3", "omegaCoupler*XiTop/Pi2 - x[1]", "exp(a)*tanh(b_end)", "atan2(a, -b_end)", "(a - (b_end - 1))^(a + 1)", "-(a + 1)^2/(b_end*(a - 2))",
                 "-3e-7*a", "if(a > b_end, a, if(b_end > 1, a/2, -b_end))*a", "sqrt(abs(a))/3", "max(a, 1/b_end)"]  # fmt: skip
     inputs = "".join(f'<input name="{name}"/>' for name in ("a", "b_end", "omegaCoupler", "XiTop", "Pi2", "x[1]"))
     outputs = "".join(f'<output name="y_{i}">{html.escape(formula)}</output>' for i, formula in enumerate(formulas))

@@ -274,6 +274,37 @@ def test_colors_and_the_button_that_inserts(browser, tmp_path):
         assert '  <experiment stopTime="3"/>' in page.locator("#source").input_value()
 
 
+def test_equilibrium_and_linearization(browser, tmp_path):
+    """
+    A mass on a spring and a damper: at rest at x = (F - m g)/k, where A = [[0, 1], [-k/m, -d/m]], B = [[0], [1/m]] and C = [[1, 0], [0, 1], [k, 0]].
+    Without the spring there is no equilibrium, and the page says so.
+    """
+    text = """<system name="Hanging">
+  <parameter name="m" start="2" unit="kg"/><parameter name="k" start="50" unit="N/m"/><parameter name="d" start="4" unit="N.s/m"/>
+  <input name="F" start="9.62" unit="N"/><coordinate name="x" velocity="v" unit="m" start="0.3"/>
+  <particle name="mass" mass="m" x="0" y="x"/><potential>m*9.81*x + k*x^2/2</potential><dissipation>d*v^2/2</dissipation>
+  <force coordinate="x">F</force><output name="pull" unit="N">k*x</output>
+</system>
+"""
+    with editor(browser, write_page(tmp_path, "SimplePendulum")) as page:
+        found = []
+        for source in (text, text.replace(" + k*x^2/2", "").replace('start="9.62"', 'start="0"')):
+            run_anew(page, source)
+            frame = page.query_selector("#page").content_frame()
+            frame.click("text=Equilibrium and linearization")
+            frame.wait_for_function("live.linearization")
+            found.append(frame.evaluate("live.linearization"))
+            if source == text:
+                assert frame.locator("#linearization table").count() == 4 and "x = -0.2 m" in frame.inner_text("#linearization")
+                frame.click("text=Start there")
+                frame.wait_for_function("live.history.length > 0 && Math.abs(live.history.samples[0][0][live.names.indexOf('x')] + 0.2) < 1e-9")
+    rest, none = found
+    expected = {"A": [[0, 1], [-25, -2]], "B": [[0], [0.5]], "C": [[1, 0], [0, 1], [50, 0]], "D": [[0], [0], [0]]}
+    assert {name: np.array(rest["model"][name]) == pytest.approx(np.array(value), abs=1e-7) for name, value in expected.items()} == dict.fromkeys(expected, True)
+    assert np.array(sorted(rest["eigenvalues"])) == pytest.approx(np.array([[-1, -np.sqrt(24)], [-1, np.sqrt(24)]]), abs=1e-6)
+    assert rest["stability"] == "stable" and "no equilibrium" in none["problem"]
+
+
 def test_several_files(browser, tmp_path):
     with editor(browser, write_page(tmp_path, "MotorPendulum")) as page:
         assert page.locator("#files option").all_inner_texts() == ["MotorPendulum/system.xml", "Motor/system.xml"]

@@ -322,6 +322,14 @@ def test_energy_bar(browser, page_file):
         assert page.locator("#scene").get_attribute("aria-label") == "Two point masses on two massless rods, as it moves"
 
 
+def test_labels_of_the_energy_bar(browser, page_file):
+    """A word that does not fit into its part of the bar is not cut, but hidden."""
+    label = "(part, width) => { part.style.width = width; const word = document.createRange(); word.selectNodeContents(part); return [...word.getClientRects()].at(-1).top < part.getBoundingClientRect().bottom; }"
+    with opened(browser, page_file("DoublePendulum")) as page:
+        kinetic = page.locator("#energies i.kinetic")
+        assert [kinetic.evaluate(label, width) for width in ("80px", "20px", "4px")] == [True, False, False]
+
+
 def test_a_section(browser, page_file):
     """A point at the end of each period, to the step; for an undamped pendulum's own period all points coincide."""
     with opened(browser, page_file("SimplePendulum"), "#b=0&theta=1") as page:
@@ -398,6 +406,12 @@ def test_the_view_in_space_is_filled(browser, page_file):
     with opened(browser, page_file("HeavyTop")) as page:
         seen = np.abs(np.array(page.evaluate(SEEN_CORNERS))[:, :2])
         assert 0.99 < seen.max() < 1.001
+
+
+def test_the_view_of_unbounded_motion(browser, page_file):
+    """The view shows at most six times the start's size: the unstable linear cart runs off by 1,000 m, and its ground and rod span 1.6 m x 0.59 m."""
+    with opened(browser, page_file("InvertedPendulumCartLinear")) as page:
+        assert 1.6 < page.evaluate("live.scene.span") < 6 * np.hypot(1.6, 0.6) + 0.5
 
 
 def test_short_experiments_and_large_numbers(browser, page_file):

@@ -2,6 +2,7 @@
 
 import importlib.util
 import math
+import shutil
 from dataclasses import replace
 
 import mpmath
@@ -18,6 +19,8 @@ from numerics.stiff import problems as stiff_problems
 from numerics.stiff.collocation import trajectory
 from numerics.stiff.comparison import Sample
 from numerics.stiff.problems import DEFINITIONS, PROBLEMS, Problem, damped as damped_pendulum, elastic, right_states
+from numerics.work_precision.compiled import odeint
+from numerics.work_precision.scenarios import CLOSED_FORMS, states_of, times_of, values_of
 from rope import START, accelerations
 
 pytestmark = pytest.mark.release
@@ -149,3 +152,13 @@ def test_polar_coordinates():
     out, across = np.array([np.sin(0.3), -np.cos(0.3), 0.0]), np.array([np.cos(0.3), np.sin(0.3), 0.0])
     state = stiff_peers.polar(2 * out, 0.5 * out - 1.4 * across)
     assert state == pytest.approx({"r": 2.0, "theta": 0.3, "vr": 0.5, "omega": -0.7})
+
+
+@pytest.mark.skipif(shutil.which("g++") is None, reason="there is no C++ compiler")
+@pytest.mark.parametrize("name", ["SimplePendulum", "ParticleSpherical"])
+def test_boost_odeint(name):
+    """The compiled Runge-Kutta method reaches the closed form at the end."""
+    columns, exact = CLOSED_FORMS[name][1](name, values_of(name), times_of(name)[-1:])
+    _, [state] = odeint(name, 1e-12)
+    order = states_of(name)
+    assert [state[order.index(column)] for column in columns] == pytest.approx(list(exact[0]), abs=1e-9)

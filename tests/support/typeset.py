@@ -25,8 +25,9 @@ def infix(element):
         return f"(({parts[0]})/({parts[1]}))"
     if tag == "msup":
         return f")**({parts[1]})" if parts[0] == ")" else f"(({parts[0]})**({parts[1]}))"
-    if tag == "msub":
-        return parts[0] + "_" + re.sub(r"\W", "_", parts[1])
+    if tag in ("msub", "msubsup"):
+        indexed = parts[0] + "_" + re.sub(r"\W", "_", parts[1])
+        return f"(({indexed})**({parts[2]}))" if parts[2:] else indexed
     if tag == "msqrt":
         return f"sqrt({''.join(parts)})"
     if tag == "mtable":  # cases with a brace before them
@@ -37,8 +38,9 @@ def infix(element):
     if tag == "mrow" and parts and parts[0] == parts[-1] == "|":
         return f"abs({''.join(parts[1:-1])})"
     if tag == "mrow" and parts[1:2] == ["apply"]:  # sin x, sin² x, sin²(x - y)
-        power, argument = re.fullmatch(r"\(\((\w+)\)\*\*\((\d+)\)\)", parts[0]), "".join(parts[2:])
-        return f"({power[1]}({argument})**{power[2]})" if power else f"{parts[0]}({argument})"
+        power, content = re.fullmatch(r"\(\((\w+)\)\*\*\((\d+)\)\)", parts[0]), "".join(parts[2:])
+        argument = content if parts[2] == "(" else f"({content})"
+        return f"({power[1]}{argument}**{power[2]})" if power else parts[0] + argument
     parts = [part for part in parts if part not in ("apply", "{")]
     return {"⋅": "*", "\u2062": "*", "−": "-", "\u2061": "apply"}.get(element.text, GREEK.get(element.text, element.text or "")) + "".join(parts)
 

@@ -8,6 +8,7 @@ from scipy.integrate import solve_ivp
 
 from numerics.driver import POINTS
 from numerics.programs import FmpyCvode, fastest, with_time_limit
+from numerics.work_precision.compiled import odeint
 from numerics.work_precision.scenarios import SCENARIOS, states_of, times_of, values_of
 from systems_in_sympy import system
 
@@ -113,14 +114,17 @@ def mujoco_steps(integrator):
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-11, 1e-12, 1e-13, 2.3e-14]  # relative and absolute; SciPy accepts no smaller ones
 STEP_SIZES = [1e-2, 1e-3, 1e-4]
 
+# Systems whose accelerations SymPy solves for in reasonable time; it does not for ten rods.
+SYMBOLIC = [name for name in SCENARIOS if name != "ChainPendulum"]
+
 # Name: (function, tolerances or steps, systems that it can express; None for all).
 PEERS = {
     "SciPy DOP853": (scipy_method("DOP853"), TOLERANCES, None),
     "SciPy LSODA": (scipy_method("LSODA"), TOLERANCES, None),
     "SciPy Radau": (scipy_method("Radau"), TOLERANCES[:5], None),
     "FMPy CVode (model exchange)": (fmpy_cvode, TOLERANCES, None),
-    # heyoka needs symbolic accelerations, which SymPy does not find in reasonable time for ten rods.
-    "heyoka": (heyoka_series, [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 2.2e-16], [name for name in SCENARIOS if name != "ChainPendulum"]),
+    "Boost.Odeint Fehlberg 7(8), in C++": (odeint, TOLERANCES, SYMBOLIC),
+    "heyoka": (heyoka_series, [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 2.2e-16], SYMBOLIC),
     "MuJoCo RK4": (mujoco_steps("RK4"), STEP_SIZES, ["InvertedPendulumCart", "ChainPendulum"]),
     "MuJoCo Euler": (mujoco_steps("Euler"), STEP_SIZES, ["InvertedPendulumCart", "ChainPendulum"]),
 }
