@@ -36,8 +36,8 @@ def in_threads(function, cores):
 def our_lanes(lanes):
     description = fmpy.read_model_description(archive(NAME))
     reference = {v.name: v.valueReference for v in description.modelVariables}
-    varied, asked = ([reference[name] for name in names] for names in (VARIED, states_of(description)))
-    ensemble = Ensemble(compile_ensemble(source_of(archive(NAME)), lanes), varied, asked, [END], TOLERANCE)
+    varied, recorded = ([reference[name] for name in names] for names in (VARIED, states_of(description)))
+    ensemble = Ensemble(compile_ensemble(source_of(archive(NAME)), lanes), varied, recorded, [END], TOLERANCE)
     return lambda cores: in_threads(lambda rows: ensemble.run(rows)[0][:, 0], cores)
 
 

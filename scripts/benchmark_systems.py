@@ -77,8 +77,8 @@ class Lanes:
     def __init__(self, name, system):
         description = fmpy.read_model_description(archive(name))
         reference = {v.name: v.valueReference for v in description.modelVariables}
-        varied, asked = ([reference[name] for name in names] for names in (system.varied, states_of(description)))
-        self.ensemble = Ensemble(compile_ensemble(source_of(archive(name)), LANES), varied, asked, [system.end], TOLERANCE)
+        varied, recorded = ([reference[name] for name in names] for names in (system.varied, states_of(description)))
+        self.ensemble = Ensemble(compile_ensemble(source_of(archive(name)), LANES), varied, recorded, [system.end], TOLERANCE)
 
     def run(self, rows):
         return timed(lambda: self.ensemble.run(rows)[0][:, 0])

@@ -61,42 +61,42 @@ class Request(Structure):
     """struct Ensemble of ensemble.h."""
 
     _fields_ = [
-        *((f"{what}_count", c_size_t) for what in ("varied", "asked", "time")),
-        *((name, c_void_p) for name in ("varied", "asked", "times")),
+        *((f"{what}_count", c_size_t) for what in ("varied", "recorded", "time")),
+        *((name, c_void_p) for name in ("varied", "recorded", "times")),
         ("tolerance", c_double),
-        *((name, c_void_p) for name in ("start", "values", "is_left")),
+        *((name, c_void_p) for name in ("start", "values", "needs_fmu")),
     ]
 
 
 class Ensemble:
-    """Runs of a compiled library from 0 s on; `varied` and `asked` are the value references of varied and of recorded variables."""
+    """Runs of a compiled library from 0 s on; `varied` and `recorded` are value references."""
 
-    def __init__(self, library, varied, asked, times, tolerance=None):
+    def __init__(self, library, varied, recorded, times, tolerance=None):
         self.library = CDLL(str(library))
-        self.varied, self.asked = (np.array(references, dtype=np.uintc) for references in (varied, asked))
+        self.varied, self.recorded = (np.array(references, dtype=np.uintc) for references in (varied, recorded))
         self.times, self.tolerance = np.array(times, dtype=float), tolerance or 0.0
-        for function in (self.library.ensemble_serves, self.library.ensemble_run):
+        for function in (self.library.ensemble_supports, self.library.ensemble_run):
             function.restype = c_bool
 
-    def request(self, start, values, is_left):
-        arrays = self.varied, self.asked, self.times
-        return Request(*map(len, arrays), *(a.ctypes.data for a in arrays), self.tolerance, *(a.ctypes.data for a in (start, values, is_left)))
+    def request(self, start, values, needs_fmu):
+        arrays = self.varied, self.recorded, self.times
+        return Request(*map(len, arrays), *(a.ctypes.data for a in arrays), self.tolerance, *(a.ctypes.data for a in (start, values, needs_fmu)))
 
-    def serves(self):
+    def supports(self):
         """Return True if the library can vary and record these variables."""
         nothing = np.empty(0)
-        return self.library.ensemble_serves(byref(self.request(nothing, nothing, nothing)))
+        return self.library.ensemble_supports(byref(self.request(nothing, nothing, nothing)))
 
     def run(self, start):
         """
         Perform n runs with the start values `start`, n x varied.
 
-        Return the recorded values, n x times x asked, and a mask of the runs that the FMU itself must perform.
+        Return the recorded values, n x times x variables, and a mask of the runs that the FMU itself must perform.
         """
         start = np.ascontiguousarray(start, dtype=float)
-        values = np.full((len(start), len(self.times), len(self.asked)), np.nan)
-        is_left = np.zeros(len(start), dtype=bool)
-        if not self.library.ensemble_run(byref(self.request(start, values, is_left)), c_size_t(0), c_size_t(len(start))):
+        values = np.full((len(start), len(self.times), len(self.recorded)), np.nan)
+        needs_fmu = np.zeros(len(start), dtype=bool)
+        if not self.library.ensemble_run(byref(self.request(start, values, needs_fmu)), c_size_t(0), c_size_t(len(start))):
             raise MemoryError
-        values[is_left] = np.nan
-        return values, is_left
+        values[needs_fmu] = np.nan
+        return values, needs_fmu

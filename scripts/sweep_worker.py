@@ -161,14 +161,14 @@ def run_in_lanes(ensemble, instance, rows, names, settings):
     Each run in lanes gets an equal share of their time. All records must be values at times.
     """
     begin, states, watched = time.perf_counter(), len(states_of(instance.description)), len(conserved_energies(instance.description))
-    values, is_left = ensemble.run(rows)
+    values, needs_fmu = ensemble.run(rows)
     seconds, sampled, times = np.full(len(rows), (time.perf_counter() - begin) / len(rows)), sampled_of(settings), list(ensemble.times)
     energies = values[:, :, states : states + watched]
     columns = [values[:, times.index(at), states + watched + sampled.index(name)] for _, _, name, at in settings["records"]]
     recorded = np.stack(columns, axis=1) if columns else np.empty((len(rows), 0))
     results = Results(energies[:, 0], energies[:, -1], values[:, -1, :states], recorded, seconds, np.full(len(rows), None))
-    if is_left.any():
-        results.replace(is_left, run_by_fmi(instance, rows[is_left], names, settings))
+    if needs_fmu.any():
+        results.replace(needs_fmu, run_by_fmi(instance, rows[needs_fmu], names, settings))
     return results
 
 

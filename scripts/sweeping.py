@@ -191,10 +191,10 @@ def ensemble_of(path, description, names, settings, runner, compile_ensemble):
     if not library:
         return None
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
-    asked = [*states, *sweep_worker.conserved_energies(description), *sweep_worker.sampled_of(settings)]
+    recorded = [*states, *sweep_worker.conserved_energies(description), *sweep_worker.sampled_of(settings)]
     times = sorted({0.0, settings["stop"], *(time for *_, time in settings["records"])})
-    ensemble = Ensemble(library, *([references[name] for name in some] for some in (names, asked)), times, settings["tolerance"])
-    return ensemble if ensemble.serves() else None
+    ensemble = Ensemble(library, *([references[name] for name in some] for some in (names, recorded)), times, settings["tolerance"])
+    return ensemble if ensemble.supports() else None
 
 
 def simulate(executor, width, archive, runner, rows, names, settings, parts, ensemble=None):

@@ -57,14 +57,14 @@ static size_t merged_into(size_t *merged, size_t point) {
 }
 
 /* True if the triangle still has three distinct corners. */
-static bool is_left(const struct Mesh *mesh, size_t triangle, size_t *merged, size_t corners[3]) {
+static bool has_three_corners(const struct Mesh *mesh, size_t triangle, size_t *merged, size_t corners[3]) {
   for (int k = 0; k < 3; k++) corners[k] = merged_into(merged, mesh->triangles[triangle][k]);
   return corners[0] != corners[1] && corners[1] != corners[2] && corners[2] != corners[0];
 }
 
-static size_t count_left(const struct Mesh *mesh, size_t *merged) {
+static size_t count_triangles(const struct Mesh *mesh, size_t *merged) {
   size_t count = 0, corners[3];
-  for (size_t i = 0; i < mesh->triangle_count; i++) count += is_left(mesh, i, merged, corners);
+  for (size_t i = 0; i < mesh->triangle_count; i++) count += has_three_corners(mesh, i, merged, corners);
   return count;
 }
 
@@ -97,7 +97,7 @@ static void write_numbers(struct PackedMesh *packed, const struct Mesh *mesh, si
   struct NumberList points = {NULL, 0}, triangles = {NULL, 0};
   size_t *numbers = allocate(mesh->point_count, sizeof *numbers), count = 0, corners[3];
   for (size_t i = 0; i < mesh->triangle_count; i++) {
-    if (!is_left(mesh, i, merged, corners)) continue;
+    if (!has_three_corners(mesh, i, merged, corners)) continue;
     for (int k = 0; k < 3; k++) {
       if (numbers[corners[k]] == 0) {
         numbers[corners[k]] = ++count;
@@ -120,7 +120,7 @@ struct PackedMesh pack_mesh(const struct Mesh *mesh) {
   for (size_t i = 0; i < mesh->point_count; i++) sorted[i].point = merged[i] = i;
   uint64_t cells = STEPS;
   size_t count = merge_points(&packed, mesh, cells, sorted, mesh->point_count, merged);
-  while (count_left(mesh, merged) > MOST_DRAWN) {
+  while (count_triangles(mesh, merged) > MOST_DRAWN) {
     cells = cells > COARSE ? COARSE : cells * 7 / 10;
     count = merge_points(&packed, mesh, cells, sorted, count, merged);
   }

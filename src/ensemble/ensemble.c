@@ -28,7 +28,7 @@ static bool is_allowed(const struct ScalarVariable *variable, double value) {
 
 static void release_lanes(struct LaneGroup *group, Mask lanes) {
   for (int i = 0; any_lane(lanes) && i < LANES; i++)
-    if (lanes[i]) group->ensemble->is_left[group->run[i]] = true;
+    if (lanes[i]) group->ensemble->needs_fmu[group->run[i]] = true;
   group->is_active &= ~lanes;
 }
 
@@ -52,7 +52,7 @@ static void load_run(struct LaneGroup *group, int lane) {
   group->run[lane] = run;
   group->time[lane] = 0;
   group->is_active[lane] = is_right ? -1 : 0;
-  ensemble->is_left[run] = !is_right;
+  ensemble->needs_fmu[run] = !is_right;
 }
 
 /* Computes start values that are expressions of parameters, except those that vary themselves. */
@@ -113,18 +113,18 @@ static void report_samples(struct LaneGroup *group) {
     is_lost |= lane_values_report(ensemble, &group->events, time, is_reached, group->run, group->time);
     for (int i = 0; i < LANES; i++)
       if (is_reached[i] && ++group->time[i] == ensemble->time_count) is_over[i] = -1;
-    release_lanes(group, is_lost | lane_events_may_not_end(&group->events, time, is_over));
+    release_lanes(group, is_lost | lane_events_check_end(&group->events, time, is_over));
     group->is_active &= ~is_over;
   }
 }
 
-bool ensemble_serves(const struct Ensemble *ensemble) {
-  bool serves = lagrangian.steps.max_steps == 0 && lagrangian.constraints.prescribed_input_count == 0;
+bool ensemble_supports(const struct Ensemble *ensemble) {
+  bool is_supported = lagrangian.steps.max_steps == 0 && lagrangian.constraints.prescribed_input_count == 0;
   for (size_t i = 0; i < ensemble->varied_count; i++)
-    serves &= lane_values_can_vary(&lagrangian.variables[ensemble->varied[i]]);
-  for (size_t i = 0; i < ensemble->asked_count; i++)
-    serves &= lane_values_can_report(&lagrangian.variables[ensemble->asked[i]]);
-  return serves;
+    is_supported &= lane_values_can_vary(&lagrangian.variables[ensemble->varied[i]]);
+  for (size_t i = 0; i < ensemble->recorded_count; i++)
+    is_supported &= lane_values_can_report(&lagrangian.variables[ensemble->recorded[i]]);
+  return is_supported;
 }
 
 bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count) {

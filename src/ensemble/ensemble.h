@@ -16,17 +16,17 @@
 
 /* An ensemble. Variables are value references. Runs start at time 0, with the system's start values unless varied. */
 struct Ensemble {
-  size_t varied_count, asked_count, time_count;
-  const unsigned *varied, *asked;
+  size_t varied_count, recorded_count, time_count;
+  const unsigned *varied, *recorded;
   const double *times; /* in s, ascending, not negative; the last is the end of the runs, and positive */
   double tolerance;    /* relative; 0: the system's own */
   const double *start; /* values of the varied variables: runs x varied_count */
-  double *values;      /* sampled values: runs x time_count x asked_count */
-  bool *is_left;       /* runs that failed or need the FMU: their values are invalid */
+  double *values;      /* sampled values: runs x time_count x recorded_count */
+  bool *needs_fmu;     /* runs that failed or need the FMU: their values are invalid */
 };
 
-/* True if the ensemble supports the system, the varied and the asked variables. */
-ENSEMBLE_EXPORT bool ensemble_serves(const struct Ensemble *ensemble);
+/* True if the ensemble supports the system, the varied and the recorded variables. */
+ENSEMBLE_EXPORT bool ensemble_supports(const struct Ensemble *ensemble);
 
 /* Simulates runs first .. first + count - 1. Returns false if memory is exhausted. */
 ENSEMBLE_EXPORT bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count);

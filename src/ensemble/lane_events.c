@@ -193,14 +193,14 @@ Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes) {
   return lost;
 }
 
-Mask lane_events_may_not_end(struct LaneEvents *events, Lanes time, Mask lanes) {
+Mask lane_events_check_end(struct LaneEvents *events, Lanes time, Mask lanes) {
   struct LaneSteps *steps = events->steps;
-  Mask may_not = {0};
-  if (lagrangian.switches == NULL) return may_not;
+  Mask fails = {0};
+  if (lagrangian.switches == NULL) return fails;
   for (int i = 0; i < LANES; i++) {
     if (!lanes[i]) continue;
     struct LaneView view = view_of(steps, i);
-    may_not[i] = single_run_may_end(events->run, &view, time[i], (double *)steps->state + i) ? 0 : -1;
+    fails[i] = single_run_may_end(events->run, &view, time[i], (double *)steps->state + i) ? 0 : -1;
   }
-  return may_not;
+  return fails;
 }

@@ -46,6 +46,6 @@ Mask lane_events_accelerations(struct LaneEvents *events, Lanes time);
 Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes);
 
 /* Returns the lanes in which the checks at the end of a run fail for steps->state. */
-Mask lane_events_may_not_end(struct LaneEvents *events, Lanes time, Mask lanes);
+Mask lane_events_check_end(struct LaneEvents *events, Lanes time, Mask lanes);
 
 #endif

@@ -15,8 +15,8 @@ static Lanes value_of(const struct ScalarVariable *variable, const struct Point 
 }
 
 static bool asks_for_accelerations(const struct Ensemble *ensemble) {
-  for (size_t i = 0; i < ensemble->asked_count; i++) {
-    const struct ScalarVariable *variable = &lagrangian.variables[ensemble->asked[i]];
+  for (size_t i = 0; i < ensemble->recorded_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[ensemble->recorded[i]];
     if (variable->kind == VARIABLE_RESULT && lagrangian.results.uses_acceleration[variable->index]) return true;
   }
   return false;
@@ -41,12 +41,12 @@ Mask lane_values_report(const struct Ensemble *ensemble, struct LaneEvents *even
   struct Point point = lane_steps_point(events->steps, time);
   Mask is_lost = {0};
   const Lanes *acceleration = asks_for_accelerations(ensemble) ? accelerations(events, time, &is_lost) : NULL;
-  for (size_t i = 0; i < ensemble->asked_count; i++) {
-    Lanes value = value_of(&lagrangian.variables[ensemble->asked[i]], &point, acceleration);
+  for (size_t i = 0; i < ensemble->recorded_count; i++) {
+    Lanes value = value_of(&lagrangian.variables[ensemble->recorded[i]], &point, acceleration);
     is_lost |= ~lanes_are_finite(value);
     for (int j = 0; j < LANES; j++)
       if (is_reached[j])
-        ensemble->values[(run[j] * ensemble->time_count + slot[j]) * ensemble->asked_count + i] = value[j];
+        ensemble->values[(run[j] * ensemble->time_count + slot[j]) * ensemble->recorded_count + i] = value[j];
   }
   return is_lost & is_reached;
 }

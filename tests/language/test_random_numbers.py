@@ -167,8 +167,8 @@ def test_lanes_have_the_same_noise(built):
     """Each run of a sweep has its own seed; runs with the same seed are identical."""
     rows = np.array([[0.0], [1.0], [3.0], [3.0], [-7.0], [1e9]])
     for lanes in NUMBERS:
-        values, is_left = ensemble("Noise", ["seed"], ["x", "v", "o"], [0, 1.7], lanes).run(rows)
-        assert not is_left.any()
+        values, needs_fmu = ensemble("Noise", ["seed"], ["x", "v", "o"], [0, 1.7], lanes).run(rows)
+        assert not needs_fmu.any()
         for (seed,), (_, (x, v, o)) in zip(rows, values):
             assert (x, v, o) == pytest.approx((*noisy(1.7, int(seed)), gauss(int(seed), 12)), abs=1e-8)
         np.testing.assert_array_equal(values[2], values[3])

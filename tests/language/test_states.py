@@ -232,11 +232,11 @@ def test_messages(case, tmp_path):
                                           ("Coupled", {"a": (0.5, 1), "s": (-1, 1)}), ("Rod", {"lag": (-1, 1)})])  # fmt: skip
 def test_many_runs_at_once(systems, name, ranges):
     rows = starts(ranges, 9)
-    asked = states(name)
-    values, is_left = ensemble(name, ranges, asked, [0, 1, 2]).run(rows)
-    assert not is_left.any()
+    recorded = states(name)
+    values, needs_fmu = ensemble(name, ranges, recorded, [0, 1, 2]).run(rows)
+    assert not needs_fmu.any()
     for row, value in zip(rows, values):
-        expected = alone(name, dict(zip(ranges, row)), asked, 2, 2)
+        expected = alone(name, dict(zip(ranges, row)), recorded, 2, 2)
         np.testing.assert_allclose(value, expected, rtol=1e-7, atol=1e-7)
 
 
@@ -255,12 +255,12 @@ def test_a_saved_state_continues_with_the_same_bits(systems, open_fmu, name):
 @pytest.mark.parametrize("name", ["Filter_auto", "Block", "Pid", "Rod"])
 def test_model_exchange(systems, name):
     """FMPy's CVode in both versions of FMI, and co-simulation of FMI 3.0, agree with co-simulation of FMI 2.0."""
-    asked = states(name)
-    exact = alone(name, {}, asked, 2)[-1]
+    recorded = states(name)
+    exact = alone(name, {}, recorded, 2)[-1]
     for archive in (fmu.archive(name), fmi3.archive(name)):
-        result = fmpy.simulate_fmu(str(archive), fmi_type="ModelExchange", stop_time=2, output=asked, relative_tolerance=1e-9)
+        result = fmpy.simulate_fmu(str(archive), fmi_type="ModelExchange", stop_time=2, output=recorded, relative_tolerance=1e-9)
         np.testing.assert_allclose(list(result[-1])[1:], exact, rtol=2e-5, atol=2e-5)
-    result = fmpy.simulate_fmu(str(fmi3.archive(name)), stop_time=2, output=asked, relative_tolerance=1e-10)
+    result = fmpy.simulate_fmu(str(fmi3.archive(name)), stop_time=2, output=recorded, relative_tolerance=1e-10)
     np.testing.assert_allclose(list(result[-1])[1:], exact, rtol=1e-8, atol=1e-8)
 
 

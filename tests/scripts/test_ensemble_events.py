@@ -35,9 +35,9 @@ def test_a_run_has_the_same_bits_among_any_others(name):
 
 def test_long_runs_keep_to_their_constraints():
     """At a loose tolerance, whose errors would let the motion drift off its circle."""
-    rows, asked = starts({"l": (0.5, 1), "g": (5, 10)}, 20), ["x", "y", "vx", "vy"]
-    values, _ = ensemble("PendulumCartesian", ["l", "g"], asked, [30.0], tolerance=1e-6).run(rows)
-    expected = [alone("PendulumCartesian", dict(zip(("l", "g"), row)), asked, 30.0, tolerance=1e-6)[-1] for row in rows]
+    rows, recorded = starts({"l": (0.5, 1), "g": (5, 10)}, 20), ["x", "y", "vx", "vy"]
+    values, _ = ensemble("PendulumCartesian", ["l", "g"], recorded, [30.0], tolerance=1e-6).run(rows)
+    expected = [alone("PendulumCartesian", dict(zip(("l", "g"), row)), recorded, 30.0, tolerance=1e-6)[-1] for row in rows]
     np.testing.assert_allclose(values[:, 0], expected, atol=1e-7)
 
 
@@ -58,9 +58,9 @@ def ball(height, e, time, g=9.81):
 def test_balls_in_closed_form():
     """At the end some balls still fly; others rest after infinitely many bounces."""
     rows, times = starts({"h": (0.2, 2), "e": (0.1, 0.95)}, 60), [0.1, 0.9, 2.2, 3.0]
-    values, is_left = ensemble("BouncingBall", ["h", "e"], ["h", "v"], times).run(rows)
+    values, needs_fmu = ensemble("BouncingBall", ["h", "e"], ["h", "v"], times).run(rows)
     exact = np.array([[ball(*row, time) for time in times] for row in rows])
-    assert not is_left.any() and 20 < np.sum(exact[:, -1, 1] == 0.0) < 55
+    assert not needs_fmu.any() and 20 < np.sum(exact[:, -1, 1] == 0.0) < 55
     np.testing.assert_allclose(values[:, :, 0], exact[:, :, 0], atol=1e-9)
     np.testing.assert_allclose(values[:, :, 1], exact[:, :, 1], atol=1e-8)
 
@@ -89,25 +89,25 @@ def of_tests():
 def test_a_narrow_wall_is_not_passed_over(of_tests):
     """A narrow hill closes a gap that is flat where the particle starts: it is reflected at 1 - w sqrt(ln 1.5)."""
     rows = np.array([[speed, w] for speed in (0.7, 1.0, 3.0) for w in (1e-2, 1e-4)])
-    values, is_left = ensemble("NarrowWall", ["v", "w"], ["x", "v"], [4.0]).run(rows)
+    values, needs_fmu = ensemble("NarrowWall", ["v", "w"], ["x", "v"], [4.0]).run(rows)
     wall = 1 - rows[:, 1] * np.sqrt(np.log(1.5))
-    assert not is_left.any()
+    assert not needs_fmu.any()
     np.testing.assert_allclose(values[:, 0], np.array([2 * wall - 4 * rows[:, 0], -rows[:, 0]]).T, atol=1e-9)
 
 
 def test_events_that_set_modes(of_tests):
     """A force acts up to x = 1, where an event halves the velocity."""
     rows = np.array([[0.5, 1.0], [1.0, 0.0], [2.0, 0.3], [8.0, 0.0]])
-    values, is_left = ensemble("Door", ["force", "v"], ["x", "v"], [3.0]).run(rows)
+    values, needs_fmu = ensemble("Door", ["force", "v"], ["x", "v"], [3.0]).run(rows)
     force, start = rows.T
     speed = np.sqrt(start**2 + 2 * force)
     time = (speed - start) / force
-    assert not is_left.any()
+    assert not needs_fmu.any()
     np.testing.assert_allclose(values[:, 0], np.array([1 + speed / 2 * (3 - time), speed / 2]).T, rtol=1e-9)
 
 
 def test_runs_that_fail_are_left_to_the_fmu(of_tests):
     """A ball below the ground, and an <event> with Zeno behaviour, are left to the FMU; other runs are unaffected."""
     assert list(ensemble("BouncingBall", ["h"], ["h"], [1.0]).run([[-1.0], [1.0]])[1]) == [True, False]
-    values, is_left = ensemble("Chatter", ["x", "v"], ["x"], [5.0]).run([[1.0, 0.0], [20.0, 1.0], [0.0, 0.5]])
-    assert list(is_left) == [True, False, True] and values[1, 0, 0] == pytest.approx(20 + 5 - 12.5, abs=1e-9)
+    values, needs_fmu = ensemble("Chatter", ["x", "v"], ["x"], [5.0]).run([[1.0, 0.0], [20.0, 1.0], [0.0, 0.5]])
+    assert list(needs_fmu) == [True, False, True] and values[1, 0, 0] == pytest.approx(20 + 5 - 12.5, abs=1e-9)

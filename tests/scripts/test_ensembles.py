@@ -86,8 +86,8 @@ def of_tests():
 
 def test_a_narrow_hill_is_not_passed_over(of_tests):
     """exp is flat where the particle starts. The hill delays it by the integral of 1/sqrt(v0^2 - 2 V) - 1/v0, or reflects it."""
-    values, is_left = ensemble("Hill", ["v"], ["x", "v"], [2.0]).run([[1.3], [1.4143], [1.5], [2.0], [3.0]])
-    assert not is_left.any()
+    values, needs_fmu = ensemble("Hill", ["v"], ["x", "v"], [2.0]).run([[1.3], [1.4143], [1.5], [2.0], [3.0]])
+    assert not needs_fmu.any()
     assert values[0, 0, 1] == pytest.approx(-1.3, abs=1e-8) and values[0, 0, 0] < 0
     for speed, value in zip((1.5, 2.0, 3.0), values[2:, 0]):
         delay = mpmath.quad(lambda x: 1 / mpmath.sqrt(speed**2 - 2 * mpmath.exp(-400 * (x - 1) ** 2)) - 1 / mpmath.mpf(speed), [0, 0.8, 0.9, 1, 1.1, 1.2, 2])
@@ -97,8 +97,8 @@ def test_a_narrow_hill_is_not_passed_over(of_tests):
 def test_values_of_accelerations(of_tests):
     """The force of the hill, 2 k (x - 1) exp(-k (x - 1)^2); and a value that is not finite at the start only."""
     rows = [[0.95], [1.02], [0.0]]
-    values, is_left = ensemble("Hill", ["x"], ["push", "inverse"], [0, 1e-6]).run(rows)
-    assert list(is_left) == [False, False, True]
+    values, needs_fmu = ensemble("Hill", ["x"], ["push", "inverse"], [0, 1e-6]).run(rows)
+    assert list(needs_fmu) == [False, False, True]
     for (x,), value in zip(rows[:2], values):
         assert value[0] == pytest.approx([800 * (x - 1) * np.exp(-400 * (x - 1) ** 2), 1 / x], rel=1e-12)
 
@@ -108,18 +108,18 @@ def test_a_stiff_run_is_left_alone(of_tests):
     Nearly x' = -1000 x, which takes a million steps: the run is left to the FMU, whose message gives the cause. The other run is
     unaffected.
     """
-    values, is_left = ensemble("Stiff", ["b", "x", "v"], ["x"], [10.0]).run([[1e5, 1e-3, 0.0], [0.0, 1.0, 2.0]])
-    assert list(is_left) == [True, False] and values[1, 0, 0] == pytest.approx(21, rel=1e-14)
+    values, needs_fmu = ensemble("Stiff", ["b", "x", "v"], ["x"], [10.0]).run([[1e5, 1e-3, 0.0], [0.0, 1.0, 2.0]])
+    assert list(needs_fmu) == [True, False] and values[1, 0, 0] == pytest.approx(21, rel=1e-14)
 
 
 def test_where_auto_may_hand_over_is_left_to_it():
     """Springs so stiff that they limit the steps of the series are left to the FMU, beside soft ones."""
     rows = np.array([[1e6, 1e4], [50.0, 1.0], [1e5, 1e4]])
-    values, is_left = ensemble("ElasticPendulum", ["k", "c"], states("ElasticPendulum"), [2.0]).run(rows)
-    assert list(is_left) == [True, False, True] and np.all(np.isfinite(values[1]))
+    values, needs_fmu = ensemble("ElasticPendulum", ["k", "c"], states("ElasticPendulum"), [2.0]).run(rows)
+    assert list(needs_fmu) == [True, False, True] and np.all(np.isfinite(values[1]))
 
 
-def test_runs_that_the_fmu_refuses_are_left_to_it():
+def test_runs_that_the_fmu_rejects_need_it():
     """
     A length below its minimum, for which the equations do have a motion; and masses so different that the matrix is singular to 14 digits.
     """
@@ -131,40 +131,40 @@ def test_runs_that_the_fmu_refuses_are_left_to_it():
 def test_tolerances_beyond_rounding():
     """A defect within rounding does not end a run; long sums of steps use compensated summation."""
     rows, time = starts({"theta": (-3, 3)}, 30), 20.0
-    values, is_left = ensemble("SimplePendulum", ["theta"], ["theta"], [time], tolerance=1e-16).run(rows)
+    values, needs_fmu = ensemble("SimplePendulum", ["theta"], ["theta"], [time], tolerance=1e-16).run(rows)
     exact = [pendulum_angle(theta, np.sqrt(9.81), time) for (theta,) in rows]
-    assert not is_left.any()
+    assert not needs_fmu.any()
     np.testing.assert_allclose(values[:, 0, 0], exact, atol=1e-12)
 
 
 def test_runs_without_a_solution_are_left_alone():
     """A particle on the axis of its coordinates, an invalid mass, and NaN affect no other run."""
-    ranges, asked = {"phi": (0.5, 2), "m": (0.5, 2)}, states("ParticleSpherical")
+    ranges, recorded = {"phi": (0.5, 2), "m": (0.5, 2)}, states("ParticleSpherical")
     rows = starts(ranges, 40)
-    one = ensemble("ParticleSpherical", ranges, asked, [0, 1])
-    values, is_left = one.run(rows)
-    assert not is_left.any()
+    one = ensemble("ParticleSpherical", ranges, recorded, [0, 1])
+    values, needs_fmu = one.run(rows)
+    assert not needs_fmu.any()
     bad = rows.copy()
     bad[3, 0], bad[4, 1], bad[17, 1], bad[39, 0] = 0.0, 0.0, -1.0, np.nan
-    others, is_left = one.run(bad)
-    assert list(np.flatnonzero(is_left)) == [3, 4, 17, 39] and np.all(np.isnan(others[is_left]))
-    np.testing.assert_array_equal(others[~is_left], values[~is_left])
+    others, needs_fmu = one.run(bad)
+    assert list(np.flatnonzero(needs_fmu)) == [3, 4, 17, 39] and np.all(np.isnan(others[needs_fmu]))
+    np.testing.assert_array_equal(others[~needs_fmu], values[~needs_fmu])
 
 
 def test_runs_that_end_in_a_singularity_are_left_alone():
     """Some particles fall into the centre of attraction, from r = 1 after pi/(2 sqrt(2)); others pass it."""
     rows = np.array([[0.0], [0.5], [0.0], [1.0]])
-    values, is_left = ensemble("ParticlePolar", ["omega"], ["r", "vr"], [1.0, 1.2]).run(rows)
-    assert list(is_left) == [True, False, True, False] and np.all(np.isfinite(values[1::2]))
+    values, needs_fmu = ensemble("ParticlePolar", ["omega"], ["r", "vr"], [1.0, 1.2]).run(rows)
+    assert list(needs_fmu) == [True, False, True, False] and np.all(np.isfinite(values[1::2]))
 
 
 def test_unsupported_systems_and_values():
     """Exact methods, systems without states, and values that are neither Real nor states are unsupported."""
     for name in ("ParticleCartesian", "StateFeedback"):
         assert source_of(archive(name)) is None, name
-    assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).serves()
-    assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).serves()
-    assert ensemble("SimplePendulum", ["theta"], ["theta", "kineticEnergy"], [1]).serves()
+    assert not ensemble("SimplePendulum", ["theta"], ["solverSteps"], [1]).supports()
+    assert not ensemble("SimplePendulum", ["der(theta)"], ["theta"], [1]).supports()
+    assert ensemble("SimplePendulum", ["theta"], ["theta", "kineticEnergy"], [1]).supports()
 
 
 FUNCTIONS = ["exp(x)", "exp(-x^2)", "1/log(2 + x)", "log(3 + x)", "sin(3*x)*cos(x)", "tan(x/2)", "asin(x/3)", "acos(x/3)", "atan(2*x)", "sinh(x)", "cosh(x)", "tanh(4*x)",
@@ -183,11 +183,11 @@ def test_functions_and_their_series(form):
     name = f"FunctionsIn{form.title()}"
     build_systems("ensembles", {name: f'<system name="{name}">{head}{particles}<solver method="taylor"/></system>'}, "--form", form)
     ranges = {"m": (1, 2), "n": (0.5, 2.5), **{f"x{i}": (-0.7, 0.7) for i in range(len(FUNCTIONS) - 3)}}
-    rows, asked = starts(ranges, HERE + 3), states(name)
-    values, is_left = ensemble(name, ranges, asked, [0.4]).run(rows)
-    assert not is_left.any()
+    rows, recorded = starts(ranges, HERE + 3), states(name)
+    values, needs_fmu = ensemble(name, ranges, recorded, [0.4]).run(rows)
+    assert not needs_fmu.any()
     for row, value in zip(rows, values):
-        np.testing.assert_allclose(value[0], alone(name, dict(zip(ranges, row)), asked, 0.4)[-1], rtol=1e-9, atol=1e-9)
+        np.testing.assert_allclose(value[0], alone(name, dict(zip(ranges, row)), recorded, 0.4)[-1], rtol=1e-9, atol=1e-9)
 
 
 SINES = """

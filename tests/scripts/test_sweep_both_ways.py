@@ -200,7 +200,7 @@ from tempfile import TemporaryDirectory
 from lagrange_fmu.sweeps import compile_ensemble
 for path in sys.argv[2:]:
     with TemporaryDirectory() as folder:
-        CDLL(str(compile_ensemble(Path(folder), Path(path).read_text(), int(sys.argv[1]))), mode=os.RTLD_NOW).ensemble_serves
+        CDLL(str(compile_ensemble(Path(folder), Path(path).read_text(), int(sys.argv[1]))), mode=os.RTLD_NOW).ensemble_supports
 """
     result = package.python(assembled, "-c", code, HERE, *sorted(tmp_path.glob("*.c")), cwd=tmp_path)
     assert result.returncode == 0, result.stderr

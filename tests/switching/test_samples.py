@@ -363,8 +363,8 @@ def test_many_runs_at_once():
     from ensemble_runs import ensemble
 
     periods, times = np.linspace(0.05, 0.3, 19), [0.3, 1.0, 2.95]
-    values, is_left = ensemble("ServoTaylor", ["Ts", "kp"], ["x", "v"], times).run(np.array([[period, 3.0] for period in periods]))
-    assert not is_left.any()
+    values, needs_fmu = ensemble("ServoTaylor", ["Ts", "kp"], ["x", "v"], times).run(np.array([[period, 3.0] for period in periods]))
+    assert not needs_fmu.any()
     exact = [[exact_servo(time, Ts=period)[:2] for time in times] for period in periods]
     np.testing.assert_allclose(values, exact, atol=1e-8)
 
