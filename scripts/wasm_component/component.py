@@ -152,8 +152,8 @@ def imports():
         lines.append(f"(type $plain-{name} {typed(content, 'offered-')}) (export {quoted(name)} (type $offered-{name} (eq $plain-{name})))")
     lines.append("))")
     lines += [f"(alias export $types {quoted(name)} (type ${name}))" for name in TYPES]
-    lines.append(f"""(import {quoted(PACKAGE.format("callbacks"))} (instance $callbacks (export "status" (type $told-status (eq $status)))
-      (export "log-message" (func {parameters_of(LOG_MESSAGE, "told-")}))))""")
+    lines.append(f"""(import {quoted(PACKAGE.format("callbacks"))} (instance $callbacks (export "status" (type $log-status (eq $status)))
+      (export "log-message" (func {parameters_of(LOG_MESSAGE, "log-")}))))""")
     return lines
 
 

@@ -17,16 +17,16 @@ static struct FmuLibrary fmu;
 static const char *guid;
 static fmi2ValueReference output;
 
-static long count;            /* number of allocations so far */
-static long first_refused;    /* number of the first allocation to fail */
-static bool refused_for_good; /* those after it fail, too */
-static bool refuses;          /* false: all allocations succeed */
-static bool told;             /* a message mentioned memory */
+static long count;          /* number of allocations so far */
+static long first_failure;  /* number of the first allocation to fail */
+static bool all_later_fail; /* those after it fail, too */
+static bool may_fail;       /* false: all allocations succeed */
+static bool is_reported;    /* a message mentioned memory */
 
 static void *allocate(size_t number, size_t size) {
   count++;
-  bool refused = refuses && (refused_for_good ? count >= first_refused : count == first_refused);
-  return refused ? NULL : count_allocation(number, size);
+  bool fails = may_fail && (all_later_fail ? count >= first_failure : count == first_failure);
+  return fails ? NULL : count_allocation(number, size);
 }
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2Status status, fmi2String category,
@@ -34,7 +34,7 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String name, fmi2St
   (void)environment;
   (void)name;
   (void)category;
-  if (status == fmi2Error && strstr(message, "memory") != NULL) told = true;
+  if (status == fmi2Error && strstr(message, "memory") != NULL) is_reported = true;
 }
 
 /* Saves and restores the state by its bytes. */
@@ -71,7 +71,8 @@ static bool simulate(fmi2Component c, double *end) {
 
 static bool expect(bool right, const char *what) {
   if (!right)
-    fprintf(stderr, "allocation %ld refused%s: %s\n", first_refused, refused_for_good ? " for good" : "", what);
+    fprintf(stderr, "allocation %ld failed%s: %s\n", first_failure, all_later_fail ? " with all that follow" : "",
+            what);
   return right;
 }
 
@@ -80,12 +81,13 @@ static bool survives(double expected) {
   const fmi2CallbackFunctions callbacks = {logger, allocate, count_free, NULL, NULL};
   double end = 0.0;
   count = blocks = 0;
-  told = false;
-  refuses = true;
+  is_reported = false;
+  may_fail = true;
   fmi2Component c = fmu.fmi2Instantiate("memory", fmi2CoSimulation, guid, NULL, &callbacks, fmi2False, fmi2True);
-  bool simulated = c != NULL && simulate(c, &end), reached = count >= first_refused;
-  bool right = expect(simulated != reached, reached ? "no error" : "an error") && expect(told == reached, "no message");
-  refuses = false;
+  bool simulated = c != NULL && simulate(c, &end), reached = count >= first_failure;
+  bool right =
+      expect(simulated != reached, reached ? "no error" : "an error") && expect(is_reported == reached, "no message");
+  may_fail = false;
   if (right && c != NULL && reached)
     right = expect(fmu.fmi2Reset(c) == fmi2OK && simulate(c, &end), "no simulation after a reset");
   right = right && (c == NULL || expect(end == expected, "another end"));
@@ -106,8 +108,8 @@ int main(int words_count, char **words) {
   long all = count;
   for (long number = 1; number <= all && right; number++)
     for (int for_good = 0; for_good < 2 && right; for_good++) {
-      first_refused = number;
-      refused_for_good = for_good != 0;
+      first_failure = number;
+      all_later_fail = for_good != 0;
       right = survives(expected);
     }
   printf("%ld allocations\n", all);

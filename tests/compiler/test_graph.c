@@ -20,7 +20,7 @@ static void test_operands_come_first(void **state) {
   }
 }
 
-static void test_constants_are_told_apart_by_their_bits(void **state) {
+static void test_constants_are_compared_by_their_bits(void **state) {
   (void)state;
   struct Graph *graph = graph_create();
   assert_int_equal(graph_constant(graph, 0.0), ZERO);
@@ -71,7 +71,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_equal_expressions_are_one_node),
       cmocka_unit_test(test_operands_come_first),
-      cmocka_unit_test(test_constants_are_told_apart_by_their_bits),
+      cmocka_unit_test(test_constants_are_compared_by_their_bits),
       cmocka_unit_test(test_marking_finds_what_is_needed),
       cmocka_unit_test(test_growth),
       cmocka_unit_test(test_long_products),

@@ -40,7 +40,7 @@ static void test_units_in_each_other(void **state) {
   }
 }
 
-static void test_units_that_are_refused(void **state) {
+static void test_invalid_units(void **state) {
   (void)state;
   static const char *const wrong[] = {"", "km", "m//s", "m/s/s", "N.", "(m", "m)", "m^2", "deg", "m2x", "m999999999"};
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
@@ -68,7 +68,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_units_in_base_units),
       cmocka_unit_test(test_units_in_each_other),
-      cmocka_unit_test(test_units_that_are_refused),
+      cmocka_unit_test(test_invalid_units),
       cmocka_unit_test(test_agreement),
   };
   return cmocka_run_group_tests_name("units", tests, NULL, NULL);

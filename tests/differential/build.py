@@ -44,7 +44,7 @@ def compile_system(system, folder):
     words = library_words(target / "system.c", library, plan.fmi, plan.compiler, ["-O2"] if plan.unrolled else SPEED)
     result = run(words, plan.compiler)
     if result.returncode != 0:
-        raise Wrong(f"C that {plan.compiler} refuses: {result.stderr[:1000]}")
+        raise Wrong(f"C that {plan.compiler} rejects: {result.stderr[:1000]}")
     return pack(system, folder, library) if plan.packed else unpacked
 
 
@@ -57,5 +57,5 @@ def pack(system, folder, library):
     unpacked = fmpy.extract(str(archive), str(folder / "unpacked"))
     source = Path(unpacked) / "sources" / f"{system.name}.c"
     if source.exists() and (complaints := fmu.complaints_about(source, system.plan.compiler)):
-        raise Wrong(f"one file that {system.plan.compiler} refuses: {complaints[:1000]}")
+        raise Wrong(f"one file that {system.plan.compiler} rejects: {complaints[:1000]}")
     return unpacked

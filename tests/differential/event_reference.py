@@ -70,13 +70,13 @@ def parts_in_c(derivation):
 
 
 class Modes:
-    """Arrays closed, sliding, held and modes, in the order that follows the constants."""
+    """Arrays closed, sliding, active and modes, in the order that follows the constants."""
 
     def __init__(self, sizes, system):
         counts = [sizes["CONTACTS"], sizes["FRICTIONS"], sizes["EVENTS"], len(system.switches.modes)]
         self.values = real(np.zeros(sum(counts)))
         ends = np.cumsum([0, *counts])
-        self.closed, self.sliding, self.held, self.modes = (self.values[a:b] for a, b in zip(ends, ends[1:]))
+        self.closed, self.sliding, self.active, self.modes = (self.values[a:b] for a, b in zip(ends, ends[1:]))
         self.modes[:] = list(system.switches.modes.values())
 
 
@@ -172,7 +172,7 @@ class EventReference:
             self._choose()
             p = self._look()
             if starts:
-                self.flags.held[:] = p.events > 0
+                self.flags.active[:] = p.events > 0
                 return
             if not self._happen(p):
                 return
@@ -183,8 +183,8 @@ class EventReference:
         first, writes = 0, []
         for i, event in enumerate(self.system.switches.events):
             is_positive = p.events[i] > 0
-            if is_positive != (self.flags.held[i] != 0):
-                self.flags.held[i] = is_positive
+            if is_positive != (self.flags.active[i] != 0):
+                self.flags.active[i] = is_positive
                 if event.direction in (None, "rising") and is_positive or event.direction == "falling" and not is_positive or event.direction == "both":
                     writes += [(kind, label, p.sets[first + k]) for k, (kind, label, _) in enumerate(event.sets)]
             first += len(event.sets)
@@ -271,7 +271,7 @@ class EventReference:
     def _is_right(self, state, close, slow):
         if not close and not slow:
             return True
-        kept = self.state, self.time, self.step, self.flags.held.copy()
+        kept = self.state, self.time, self.step, self.flags.active.copy()
         self.state, self.step = state.copy(), REAL(AHEAD)
         try:
             p = self._ahead()
@@ -308,12 +308,12 @@ class EventReference:
         """Perturb the state along the active constraints."""
         change = real(kick([float(x) for x in self.state]))
         p = self._look()
-        held = [p.gradients[i] for i in np.flatnonzero(self.flags.closed)]
+        closed = [p.gradients[i] for i in np.flatnonzero(self.flags.closed)]
         stuck = [p.ways[j] for j in range(len(self.frictions)) if self.flags.sliding[j] == 0 and not self._is_idle(j)]
-        if held:
-            change[: self.n] -= p.least_change(held, [row @ change[: self.n] for row in held])
-        if held + stuck:
-            change[self.n :] -= p.least_change(held + stuck, [row @ change[self.n :] for row in held + stuck])
+        if closed:
+            change[: self.n] -= p.least_change(closed, [row @ change[: self.n] for row in closed])
+        if closed + stuck:
+            change[self.n :] -= p.least_change(closed + stuck, [row @ change[self.n :] for row in closed + stuck])
         self.state = self.state + change
         self._resolve_event()
 
@@ -363,5 +363,5 @@ class Parts:
 
     def least_change(self, rows, rates):
         answers = [self.response(row) for row in rows]
-        pushes = solve([[row @ answer for answer in answers] for row in rows], rates)
-        return sum(push * answer for push, answer in zip(pushes, answers))
+        factors = solve([[row @ answer for answer in answers] for row in rows], rates)
+        return sum(push * answer for push, answer in zip(factors, answers))

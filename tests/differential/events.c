@@ -26,7 +26,7 @@ static const real *closed_of(const real *k) {
 static const real *sliding_of(const real *k) {
   return k + FIRST_MODE + CONTACTS;
 }
-static const real *held_of(const real *k) {
+static const real *active_of(const real *k) {
   return k + FIRST_MODE + CONTACTS + FRICTIONS;
 }
 
@@ -100,7 +100,7 @@ static bool has_changed(real t, const real *y, const real *k) {
     if (mode != 0 ? mode * friction[0] < -rounding : fabsl(force[CONTACTS + i]) > stiction + rounding) return true;
   }
   for (int i = 0; i < EVENTS; i++)
-    if ((p[AT_EVENTS + i] > 0) != (held_of(k)[i] != 0)) return true;
+    if ((p[AT_EVENTS + i] > 0) != (active_of(k)[i] != 0)) return true;
   return false;
 }
 

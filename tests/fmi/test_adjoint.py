@@ -24,13 +24,13 @@ MIXED = """<system name="Mixed"><parameter name="m" start="0.3" unit="kg"/><para
   <force coordinate="x">F*exp(-w*time)</force><work/>
   <output name="push" unit="N">m*der(v) + k*x*tanh(F/(k*l))</output><output name="lean" unit="1">tanh(theta)*l/s*w</output></system>"""
 # Systems of fmu/ under other names, since other tests build the originals without --adjoint.
-HELD = {f"Adjoint{name}": (ROOT / "fmu" / name / "system.xml").read_text().replace(f'name="{name}"', f'name="Adjoint{name}"') for name in ("FourBar", "ChainPendulum")}
-HELD["AdjointBranchedArm"] = (ROOT / "tests" / "support" / "branched_arm.xml").read_text().replace('name="BranchedArm"', 'name="AdjointBranchedArm"')
+CONSTRAINED = {f"Adjoint{name}": (ROOT / "fmu" / name / "system.xml").read_text().replace(f'name="{name}"', f'name="Adjoint{name}"') for name in ("FourBar", "ChainPendulum")}
+CONSTRAINED["AdjointBranchedArm"] = (ROOT / "tests" / "support" / "branched_arm.xml").read_text().replace('name="BranchedArm"', 'name="AdjointBranchedArm"')
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("adjoint", {"Mixed": MIXED} | HELD, "--adjoint", versions=(3,))
+    build_systems("adjoint", {"Mixed": MIXED} | CONSTRAINED, "--adjoint", versions=(3,))
 
 
 def model(name):
@@ -46,7 +46,7 @@ def model(name):
     return instance, unknowns, knowns
 
 
-@pytest.mark.parametrize("name", ["Mixed", *HELD])
+@pytest.mark.parametrize("name", ["Mixed", *CONSTRAINED])
 def test_adjoint_derivatives_are_transposed_directional_ones(name):
     """
     Adjoint derivatives of a sum of all unknowns agree with directional ones for each known: for small blocks of M, a block factored at run time, a closed loop,

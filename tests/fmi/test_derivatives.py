@@ -25,11 +25,11 @@ def set_up(name, instance, random):
     return values
 
 
-def derivative_of_accelerations(evaluate, values, direction, held):
+def derivative_of_accelerations(evaluate, values, direction, fixed):
     """Derivative of M a - f at fixed accelerations by a complex step, which has no truncation or cancellation error."""
     step = 1e-30
     mass, terms = evaluate(*(value + 1j * step * direction.get(symbol, 0) for symbol, value in values.items()))
-    residual = np.array(mass) @ held - np.array([sum(row) for row in terms])
+    residual = np.array(mass) @ fixed - np.array([sum(row) for row in terms])
     return -np.linalg.solve(np.array(mass).real, residual.imag / step)
 
 
@@ -44,9 +44,9 @@ def test_directional_derivatives_of_accelerations(name, kind, open_fmu):
     accelerations = instance.vr(*[f"der({v.name})" for v in definition.v])
     for _ in range(10):
         values = set_up(name, instance, random)
-        held = instance.fmu.getReal(accelerations)
+        fixed = instance.fmu.getReal(accelerations)
         direction = random.uniform(-1, 1, len(knowns))
-        expected = derivative_of_accelerations(evaluate, values, dict(zip(knowns, direction)), held)
+        expected = derivative_of_accelerations(evaluate, values, dict(zip(knowns, direction)), fixed)
         ours = instance.fmu.getDirectionalDerivative(accelerations, instance.vr(*[s.name for s in knowns]), list(direction))
         np.testing.assert_allclose(ours, expected, rtol=1e-10, atol=1e-10 * np.max(np.abs(expected) + 1))
 

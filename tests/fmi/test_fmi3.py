@@ -350,8 +350,8 @@ def test_states(name, opened):
     second.time = 0.3
     second.step(0.2)
     assert second.get(*outputs).tobytes() == expected.tobytes()
-    for instance, held in ((first, state), (second, restored)):
-        instance.fmu.freeFMUState(held)
+    for instance, saved in ((first, state), (second, restored)):
+        instance.fmu.freeFMUState(saved)
     rejected(ERROR, second.fmu.deserializeFMUState, b"x" * len(data))
 
 

@@ -223,7 +223,7 @@ def test_steps_past_the_stop_time(name, open_fmu):
     instance.step(0.5)
 
 
-def test_discard_tells_how_far_it_came(open_fmu):
+def test_discard_reports_the_last_time(open_fmu):
     """fmi2GetRealStatus returns the time reached by a discarded step, and the state belongs to that time."""
     instance = open_fmu("ParticlePolar").initialize(dict(omega=0))
     instance.step(1.0)

@@ -47,7 +47,7 @@ def own_systems():
 def open_in_initialization(request):
     opened = []
 
-    def opener(name):
+    def open_named(name):
         module, kind = request.param
         instance = module.Instance(name, kind=kind)
         opened.append(instance)
@@ -56,7 +56,7 @@ def open_in_initialization(request):
         instance.fmu.enterInitializationMode()
         return instance
 
-    yield opener
+    yield open_named
     for instance in opened:
         instance.free()
 

@@ -39,11 +39,11 @@ def own_systems():
 def opened():
     instances = []
 
-    def opener(name, **options):
+    def open_named(name, **options):
         instances.append(fmi3.Instance(name, **options))
         return instances[-1]
 
-    yield opener
+    yield open_named
     for instance in instances:
         instance.free()
 

@@ -71,19 +71,19 @@ def test_bdf_continues_within_tolerance(open_fmu):
     instance.free_state(state)
 
 
-GO_ON = """
+CONTINUE = """
 import json, sys
 sys.path[:0] = {folders!r}
 import fmu, test_state
 
-def go_on(name, time, data):
+def continue_from(name, time, data):
     instance = fmu.Instance(name)
     state = instance.fmu.deSerializeFMUstate(bytes.fromhex(data))
     instance.fmu.setFMUstate(state)
     instance.time = time
     return test_state.drive(instance, name, 10)
 
-print(json.dumps([go_on(*saved) for saved in json.loads(sys.stdin.read())]))
+print(json.dumps([continue_from(*saved) for saved in json.loads(sys.stdin.read())]))
 """
 
 
@@ -97,7 +97,7 @@ def test_another_process_continues(open_fmu):
         drive(instance, name, 6)
         saved.append([name, instance.time, serialized(instance).hex()])
         here.append(drive(instance, name, 10))
-    program = GO_ON.format(folders=[str(ROOT / "tests" / room) for room in ("support", "fmi")])
+    program = CONTINUE.format(folders=[str(ROOT / "tests" / room) for room in ("support", "fmi")])
     there = subprocess.run([sys.executable, "-c", program], input=json.dumps(saved), capture_output=True, text=True)
     assert there.returncode == 0, there.stderr
     assert json.loads(there.stdout) == here
@@ -266,7 +266,7 @@ FORGERIES += [("=d", TIME + 8 * NUMBERS.index("suggested_step"), -1.0)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index(number), 1e3) for number in ("last_start", "searched")]
 
 
-def refuses(instance, data, *forgery):
+def rejects(instance, data, *forgery):
     with instance.fails(ERROR, "values that no instance can have saved"):
         instance.fmu.deSerializeFMUstate(forged(data, *forgery))
     instance.reset()
@@ -281,14 +281,14 @@ def test_forged_states_are_errors(name, open_fmu):
     parameter = VALUES + 8 * (len(fmu.states_of(name)) + len(fmu.names_of(name, "input")))
     places = [VALUES] * bool(fmu.states_of(name)) + [parameter]
     for forgery in FORGERIES + [("=d", place, value) for place in places for value in (np.nan, -np.inf)]:
-        refuses(instance, data, *forgery)
+        rejects(instance, data, *forgery)
 
 
 def test_forged_modes_of_the_other_kind_are_errors(open_fmu):
     instance = open_fmu("SimplePendulum", kind=FMU2Model).initialize()
     data = serialized(instance)
     for mode in (4, 5):
-        refuses(instance, data, "=i", MODE, mode)
+        rejects(instance, data, "=i", MODE, mode)
 
 
 def test_forged_series_are_errors(open_fmu):
@@ -297,15 +297,15 @@ def test_forged_series_are_errors(open_fmu):
     instance = open_fmu(name).initialize()
     instance.step(0.1)
     data, saved = serialized(instance), place_of_saved(name)
-    reach, order = struct.unpack_from("=dq", data, saved)
-    assert 0 < reach < 10 and 4 <= order <= 22
+    interval, order = struct.unpack_from("=dq", data, saved)
+    assert 0 < interval < 10 and 4 <= order <= 22
     orders = [-(2**63), -1, 0, 1, 3, 23, 24, 10**6, 2**63 - 1]
-    reaches = [np.nan, np.inf, -reach, 2 * reach]
+    intervals = [np.nan, np.inf, -interval, 2 * interval]
     numbers = range(saved + 16, len(data), 8)  # rounding errors carried along, and the coefficients
     assert len(numbers) == 2 + 2 * 24
-    forgeries = [("=q", saved + 8, value) for value in orders] + [("=d", saved, value) for value in reaches]
+    forgeries = [("=q", saved + 8, value) for value in orders] + [("=d", saved, value) for value in intervals]
     for forgery in forgeries + [("=d", place, np.nan) for place in numbers]:
-        refuses(instance, data, *forgery)
+        rejects(instance, data, *forgery)
 
 
 def test_forged_choices_are_errors(open_fmu):
@@ -314,19 +314,19 @@ def test_forged_choices_are_errors(open_fmu):
     instance.step(0.1)
     data = serialized(instance)
     choice = len(data) - 8 * 17
-    method, steps, restarts, windows, patience, next_patience, stay, is_trial, crosses = range(choice, choice + 72, 8)
-    for place in (steps, restarts, windows, patience, next_patience, stay, is_trial, crosses):
+    method, steps, restarts, windows, wait, wait_factor, stay, is_trial, crosses = range(choice, choice + 72, 8)
+    for place in (steps, restarts, windows, wait, wait_factor, stay, is_trial, crosses):
         for value in (-1, 2**63 - 1):
-            refuses(instance, data, "=q", place, value)
-    forgeries = [(steps, 7), (is_trial, 2), (crosses, 2), (method, 2), (next_patience, 10**6)]
+            rejects(instance, data, "=q", place, value)
+    forgeries = [(steps, 7), (is_trial, 2), (crosses, 2), (method, 2), (wait_factor, 10**6)]
     for forgery in forgeries:
-        refuses(instance, data, "=q", *forgery)
+        rejects(instance, data, "=q", *forgery)
     work, trial_work, predicted_step = choice + 80, choice + 96, choice + 104
     for place in (work, trial_work, predicted_step):
         for value in (np.nan, np.inf, -1.0):
-            refuses(instance, data, "=d", place, value)
+            rejects(instance, data, "=d", place, value)
     for place in (work, trial_work):
-        refuses(instance, data, "=d", place, 1e300)  # counts of operations beyond the range of integers
+        rejects(instance, data, "=d", place, 1e300)  # counts of operations beyond the range of integers
     large = forged(data, "=q", windows, 2**62 - 1)
     instance.fmu.setFMUstate(instance.fmu.deSerializeFMUstate(large))
     instance.step(10.0)
@@ -342,7 +342,7 @@ def test_forged_modes_are_errors(open_fmu):
         first_mode = VALUES + 8 * (len(fmu.states_of(name)) + len(before))
         assert struct.unpack_from("=d", data, first_mode)[0] in (-1.0, 0.0, 1.0)
         for value in (0.5, 2.0, 1e300):
-            refuses(instance, data, "=d", first_mode, value)
+            rejects(instance, data, "=d", first_mode, value)
 
 
 def test_forged_rounding_errors_are_errors(open_fmu):
@@ -353,7 +353,7 @@ def test_forged_rounding_errors_are_errors(open_fmu):
     data, saved = serialized(instance), place_of_saved(name)
     assert len(data) == saved + 16
     for place in (saved, saved + 8):
-        refuses(instance, data, "=d", place, np.inf)
+        rejects(instance, data, "=d", place, np.inf)
 
 
 @pytest.mark.parametrize("name", ["SimplePendulum", "SimplePendulumLinear", "ElasticPendulum", "BeadOnHoop"])

@@ -60,7 +60,7 @@ PUSHED = """
   <solver method="{method}"/>
 </system>
 """
-PUSHES = {"If": "if(x &lt; 0, 1, -1)", "Sign": "-sign(x)", "Curve": "steps(x)"}
+FORCES = {"If": "if(x &lt; 0, 1, -1)", "Sign": "-sign(x)", "Curve": "steps(x)"}
 
 # A mass hangs by a rod from a bead on a rail with a step: the rod is consistent until the bead is moved onto the step.
 HUNG = """
@@ -130,10 +130,10 @@ def built():
     for kink, method in by_turns(KINKS):
         name, (text, y, _) = f"{kink}{method.title()}", KINKS[kink]
         texts[name] = bead(name, text, method, y, before=RAIL)
-    for push, method in by_turns(PUSHES):
+    for push, method in by_turns(FORCES):
         name = f"Pushed{push}{method.title()}"
         table = "<table name='steps'>\n-9 1\n-1e-9 1\n1e-9 -1\n9 -1</table>" if push == "Curve" else ""
-        texts[name] = PUSHED.format(name=name, push=PUSHES[push], method=method).replace("<particle", table + "<particle")
+        texts[name] = PUSHED.format(name=name, push=FORCES[push], method=method).replace("<particle", table + "<particle")
     for method in METHODS:
         texts[f"Pressed{method}"] = PRESSED.format(method=method)
         texts[f"Late{method}"] = LATE.format(method=method, tolerance=1e-10)
@@ -215,7 +215,7 @@ def test_a_kink_in_a_constraint_is_an_error_in_model_exchange(kink, method):
     assert any("has a kink or jump in the constraint 'curve'" in message for message in messages)
 
 
-@pytest.mark.parametrize("push, method", by_turns(PUSHES))
+@pytest.mark.parametrize("push, method", by_turns(FORCES))
 def test_a_force_by_way_of_an_output(open_fmu, push, method):
     instance = open_fmu(f"Pushed{push}{method.title()}").initialize(tolerance=1e-9)
     quarter = np.sqrt(2 * 0.7)
@@ -295,7 +295,7 @@ PLACES = {
     "stop": '<stop coordinate="x" max="{} + 4"/>',
 }
 FUNCTIONS = ["{}", "abs({} - 0.3)", "if({} &gt; 0.1 and x &lt; 3, x, 2)", "table({})"]
-OPERANDS = "k u x v s x+s m der(v) s.force C.force der(x*s) byVelocity byAcceleration byDisplacement byForce byInput told P.x".split()
+OPERANDS = "k u x v s x+s m der(v) s.force C.force der(x*s) byVelocity byAcceleration byDisplacement byForce byInput reported P.x".split()
 PLACED = """
 <system name="A">
   <parameter name="k" start="2"/>
@@ -309,7 +309,7 @@ PLACED = """
   <define name="byDisplacement">sign(s - 1)</define>
   <define name="byForce">if(s.force &gt; 1, x, 2)</define>
   <define name="byInput">sign(u)</define>
-  <output name="told">if(x &gt; 0.5, x, 1) + abs(y)</output>
+  <output name="reported">if(x &gt; 0.5, x, 1) + abs(y)</output>
   <table name="table" interpolation="linear">
     0 0
     1 2

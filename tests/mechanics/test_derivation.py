@@ -29,7 +29,7 @@ def sample(name, definition, random):
     return values
 
 
-def situations(name, open_fmu):
+def random_states(name, open_fmu):
     """Yield the instance in initialization mode at random values, and these values, CASES times."""
     definition = system(name)
     instance = open_fmu(name)
@@ -48,7 +48,7 @@ def situations(name, open_fmu):
 @pytest.mark.parametrize("name", DEFINITIONS)
 def test_accelerations(name, open_fmu):
     definition = system(name)
-    for instance, values in situations(name, open_fmu):
+    for instance, values in random_states(name, open_fmu):
         exact, scale = definition.accelerations(values)
         ours = np.array(instance.fmu.getReal(instance.vr(*[f"der({v.name})" for v in definition.v])))
         assert np.all(np.abs(ours - exact) <= TOLERANCE * scale)
@@ -98,7 +98,7 @@ def test_energies_and_positions(name, open_fmu):
     definition = system(name)
     expected = energies_and_positions(name, definition)
     evaluate = sp.lambdify(definition.arguments, list(expected.values()), modules="numpy", cse=True)
-    for instance, values in situations(name, open_fmu):
+    for instance, values in random_states(name, open_fmu):
         instance.fmu.exitInitializationMode()
         ours = instance.get("totalEnergy", *expected)
         np.testing.assert_allclose(ours[1:], evaluate(*values), rtol=1e-11, atol=1e-11)
@@ -127,6 +127,6 @@ def test_published_equations(name, equations, open_fmu):
     names = {symbol.name: symbol for symbol in definition.arguments}
     formulas = [sp.sympify(line, locals=names) for line in equations.split("\n") if line.strip()]
     evaluate = sp.lambdify(definition.arguments, formulas, modules="numpy")
-    for instance, values in situations(name, open_fmu):
+    for instance, values in random_states(name, open_fmu):
         ours = instance.fmu.getReal(instance.vr(*[f"der({v.name})" for v in definition.v]))
         np.testing.assert_allclose(ours, evaluate(*values), rtol=1e-11, atol=1e-10)

@@ -29,10 +29,10 @@ def built():
 
 def inputs_of(name, body, chance):
     """Random pointer, grasped point, time and stiffness, and the values of the FMU's inputs."""
-    pointer, held = np.array([chance.uniform(-2, 2) for _ in range(3)]), np.array([chance.uniform(-0.5, 0.5) for _ in range(3)])
+    pointer, offset = np.array([chance.uniform(-2, 2) for _ in range(3)]), np.array([chance.uniform(-0.5, 0.5) for _ in range(3)])
     time, stiffness = chance.uniform(0, 0.5), chance.uniform(10, 100)
-    values = dict(zip(("pull.x", "pull.y", "pull.z", "pull.u", "pull.v", "pull.w"), [*pointer, *held]))
-    return pointer, held, time, stiffness, values | {"pull.time": time, f"pull.of.{body}": stiffness}
+    values = dict(zip(("pull.x", "pull.y", "pull.z", "pull.u", "pull.v", "pull.w"), [*pointer, *offset]))
+    return pointer, offset, time, stiffness, values | {"pull.time": time, f"pull.of.{body}": stiffness}
 
 
 def acceleration(name, values, variable):
@@ -46,10 +46,10 @@ def acceleration(name, values, variable):
 @pytest.mark.parametrize("seed", range(3))
 def test_a_planar_body(seed):
     chance = random.Random(seed)
-    pointer, held, time, stiffness, values = inputs_of("PulledRod", "rod", chance)
+    pointer, offset, time, stiffness, values = inputs_of("PulledRod", "rod", chance)
     theta, omega = chance.uniform(-3, 3), chance.uniform(-2, 2)
     axis, across = np.array([math.cos(theta), math.sin(theta)]), np.array([-math.sin(theta), math.cos(theta)])
-    point, moves = (0.7 + held[0]) * axis + held[1] * across, (0.7 + held[0]) * across - held[1] * axis
+    point, moves = (0.7 + offset[0]) * axis + offset[1] * across, (0.7 + offset[0]) * across - offset[1] * axis
     moment = stiffness * (pointer[:2] - point - time * omega * moves) @ moves
     found = acceleration("PulledRod", values | {"theta": theta, "omega": omega}, "der(omega)")
     assert found == pytest.approx(moment / (0.3 + 2 * 0.7**2), rel=1e-12)
@@ -59,10 +59,10 @@ def test_a_planar_body(seed):
 def test_a_body_in_space(seed):
     """The moment is right even for a body whose centre of mass does not move."""
     chance = random.Random(seed)
-    pointer, held, time, stiffness, values = inputs_of("PulledWheel", "wheel", chance)
+    pointer, offset, time, stiffness, values = inputs_of("PulledWheel", "wheel", chance)
     turn, rate = chance.uniform(-3, 3), chance.uniform(-2, 2)
     rotation = np.array([[1, 0, 0], [0, math.cos(turn), -math.sin(turn)], [0, math.sin(turn), math.cos(turn)]])
-    lever = rotation @ held
+    lever = rotation @ offset
     force = stiffness * (pointer - np.array([0.2, -0.1, 0.5]) - lever - time * np.cross([rate, 0, 0], lever))
     found = acceleration("PulledWheel", values | {"turn": turn, "rate": rate}, "der(rate)")
     assert found == pytest.approx(np.cross(lever, force)[0] / 0.4, rel=1e-12)

@@ -27,7 +27,7 @@ class Floor:
     def derivative(self, order, time):
         return 0.01 * self.w**order * np.sin(self.w * time + order * np.pi / 2)
 
-    def tell(self, time, highest):
+    def set_input(self, time, highest):
         """Set the input, its derivatives, and the polynomials of each up to this order until the next point."""
         self.instance.fmu.setReal(self.variables, [self.derivative(k, time) for k in range(3)])
         orders = [(k, order) for k in range(3) for order in range(1, highest + 1)]
@@ -40,10 +40,10 @@ def shaken(open_fmu, w, step, highest, names, end):
     instance = open_fmu("SeatSuspension").initialize(START | {"der(zb)": 0.01 * w}, 1e-10)
     floor, rows = Floor(instance, w), []
     for i in range(round(end / step)):
-        floor.tell(i * step, highest)
+        floor.set_input(i * step, highest)
         instance.step(step)
         instance.time = (i + 1) * step
-        floor.tell(instance.time, 0)
+        floor.set_input(instance.time, 0)
         rows.append([instance.time, *instance.fmu.getReal(instance.vr(*names))])
     return np.array(rows)
 

@@ -218,10 +218,10 @@ def test_pulling_a_particle(browser, page_file):
         page.click("#reset")
         page.wait_for_function("live.history.length === 1 && live.history.time(0) === 0")  # otherwise the bob is not yet where it is grasped
         at, pulled = pull(page, "bob", (0, 0), (90, -50))
-        (x, y, _, *held), stiffness = pulled["pointer"][:6], pulled["stiffness"]
+        (x, y, _, *offset), stiffness = pulled["pointer"][:6], pulled["stiffness"]
         along = (math.cos(at.theta), math.sin(at.theta))
         moment = stiffness * ((x - math.sin(at.theta)) * along[0] + (y + math.cos(at.theta)) * along[1])
-        assert held == [0, 0, 0] and abs(moment) > 1
+        assert offset == [0, 0, 0] and abs(moment) > 1
         assert moment == pytest.approx(9.81 * math.sin(at.theta), rel=1e-4)
         page.mouse.up()
         page.wait_for_function("live.pulled === null")
@@ -247,9 +247,9 @@ def test_pulling_a_point_of_a_body(browser, page_file):
     middle = (a * math.cos(at.theta) + b / 2 * math.cos(at.phi), a * math.sin(at.theta) + b / 2 * math.sin(at.phi))
     lever = (u * math.cos(at.phi) - v * math.sin(at.phi), u * math.sin(at.phi) + v * math.cos(at.phi))
     moves = (-a * math.sin(at.theta) - b / 2 * math.sin(at.phi) * phi_dot, a * math.cos(at.theta) + b / 2 * math.cos(at.phi) * phi_dot)
-    held_moves = (moves[0] - lever[1] * phi_dot, moves[1] + lever[0] * phi_dot)
+    point_moves = (moves[0] - lever[1] * phi_dot, moves[1] + lever[0] * phi_dot)
     weights = -rho * g * (a * a / 2 * math.cos(at.theta) + b * moves[1] + c * c / 2 * math.cos(at.psi) * psi_dot)
-    spring = stiffness * sum((pointer - place - off) * speed for pointer, place, off, speed in zip((x, y), middle, lever, held_moves))
+    spring = stiffness * sum((pointer - place - off) * speed for pointer, place, off, speed in zip((x, y), middle, lever, point_moves))
     assert abs(weights) > 1
     assert spring == pytest.approx(-weights, rel=1e-4)
 

@@ -163,7 +163,7 @@ def test_both_versions_in_one_program(name, tmp_path):
     assert subprocess.run([tmp_path / "program"], capture_output=True, text=True, check=True).stdout == "2.0 3.0"
 
 
-def refuses_to_be_fast(source, compiler, option):
+def rejects_fast_math(source, compiler, option):
     headers = [f"-I{ROOT / folder}" for folder in ("include", "src/runtime")]
     words = [compiler, "-std=c11", "-O2", "-E", "-o", "/dev/null", *headers, source, option]
     result = subprocess.run(words, capture_output=True, text=True)
@@ -174,13 +174,13 @@ def refuses_to_be_fast(source, compiler, option):
 @pytest.mark.parametrize("option", ["-ffast-math", "-Ofast", "-ffinite-math-only"])
 def test_fast_math_is_an_error(compiler, option):
     """Fast-math removes checks for nonfinite values and compensated summation."""
-    assert refuses_to_be_fast(source_of("SimplePendulum"), compiler, option)
+    assert rejects_fast_math(source_of("SimplePendulum"), compiler, option)
 
 
 def test_fast_math_is_an_error_in_every_source():
     sources = [path for path in (ROOT / "src" / "runtime").rglob("*.c") if not re.search("sundials|erk|bdf", path.name)]
     assert len(sources) > 20
-    assert [source.name for source in sources if not refuses_to_be_fast(source, "gcc", "-ffast-math")] == []
+    assert [source.name for source in sources if not rejects_fast_math(source, "gcc", "-ffast-math")] == []
 
 
 def test_only_functions_of_every_c_library():

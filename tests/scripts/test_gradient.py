@@ -10,7 +10,7 @@ import fmu
 from building import BUILD, archive_of, build_systems
 from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, STIFF, WORKED, allow_calls, belt, bounce, creep, energy_of_double, lagrange_fmu, measured, oscillation, slopes, small_bounces, work  # noqa: F401
 
-HELD = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('name="PendulumCartesian"', 'name="Held"')
+CONSTRAINED = (fmu.ROOT / "fmu" / "PendulumCartesian" / "system.xml").read_text().replace('name="PendulumCartesian"', 'name="Held"')
 MANY = """<system name="Many"><constant name="L" value="1" unit="m"/><constant name="k" value="10" unit="N/m"/>
   <for index="i" from="1" to="100"><parameter name="c[i]" start="0.01" unit="N"/></for>
   <coordinate name="x" velocity="v" unit="m" start="1"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
@@ -19,7 +19,7 @@ MANY = """<system name="Many"><constant name="L" value="1" unit="m"/><constant n
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    systems = {"Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Held": HELD, "Double": DOUBLE, "Many": MANY, "Worked": WORKED, "Stiff": STIFF}
+    systems = {"Oscillator": OSCILLATOR, "Ball": BALL, "Belt": BELT, "Held": CONSTRAINED, "Double": DOUBLE, "Many": MANY, "Worked": WORKED, "Stiff": STIFF}
     build_systems("gradients", systems, "--adjoint", versions=(3,))
 
 

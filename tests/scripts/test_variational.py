@@ -17,11 +17,11 @@ FITTED = ["m", "k", "d", "x"]
 TURNING = """<system name="Turning"><parameter name="k" start="40" unit="N/m"/><parameter name="c" start="1e5" unit="N.s/m"/><constant name="second" value="1" unit="s"/>
   <coordinate name="x" velocity="v" unit="m" start="1"/><particle mass="1" x="x"/><potential>k*x^2/2</potential>
   <dissipation>c*exp(-((time/second - 1.5)/0.3)^8)*v^2/2</dissipation></system>"""
-HELD = """<system name="Held"><parameter name="l" start="1" unit="m"/><parameter name="g" start="9.81" unit="m/s2"/>
+CONSTRAINED = """<system name="Held"><parameter name="l" start="1" unit="m"/><parameter name="g" start="9.81" unit="m/s2"/>
   <coordinate name="x" velocity="vx" unit="m" start="0.6"/><coordinate name="y" velocity="vy" unit="m" start="-0.8"/><particle mass="2" x="x" y="y"/><gravity y="-g"/>
   <constraint name="rod" unit="m">sqrt(x^2 + y^2) - l</constraint><output name="pull" unit="N">rod.force</output></system>"""
-HELD_TWICE = HELD.replace('"Held"', '"Twice"').replace("</system>", '<constraint name="again" unit="m2">x^2 + y^2 - l^2</constraint></system>')
-HELD_BY = ["l", "g", "x", "vx"]
+CONSTRAINED_TWICE = CONSTRAINED.replace('"Held"', '"Twice"').replace("</system>", '<constraint name="again" unit="m2">x^2 + y^2 - l^2</constraint></system>')
+CONSTRAINED_BY = ["l", "g", "x", "vx"]
 # Four-bar linkages of equal rods, which pass a flat position.
 FLAT = (fmu.ROOT / "fmu" / "NFourBar" / "system.xml").read_text().replace('"NFourBar"', '"Flat"').replace('name="N" value="40"', 'name="N" value="3"')
 # A block thrown onto a slope slides up and down, with friction proportional to a contact force.
@@ -36,7 +36,7 @@ RAMP = """<system name="Ramp"><parameter name="mu" start="0.2"/><parameter name=
   <friction name="rub" velocity="0.8*vx + 0.6*vy" force="mu*abs(ramp.force)"/></system>"""
 SWITCHED = {"Ramp": (RAMP, ["mu", "g", "e", "l"]), "Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"])}
 SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
-           "Worked": (WORKED, list(AT)), "Held": (HELD, HELD_BY), "Twice": (HELD_TWICE, HELD_BY), "Flat": (FLAT, ["g"])}  # fmt: skip
+           "Worked": (WORKED, list(AT)), "Held": (CONSTRAINED, CONSTRAINED_BY), "Twice": (CONSTRAINED_TWICE, CONSTRAINED_BY), "Flat": (FLAT, ["g"])}  # fmt: skip
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -197,7 +197,7 @@ def test_through_a_constraint(lagrange_fmu):  # noqa: F811
     constraint.
     """
     times = [0.0, 1.0, 3.0, 50.0]
-    values, derivatives = motion("Held", ["x", "pull", "y"], HELD_BY, times)
+    values, derivatives = motion("Held", ["x", "pull", "y"], CONSTRAINED_BY, times)
 
     def place(t, l, g, x):
         start = mpmath.atan2(x, mpmath.mpf("0.8"))
@@ -221,8 +221,8 @@ def test_constraints_that_follow_from_others(lagrange_fmu):  # noqa: F811
     from lagrange_fmu.model_exchange import opened
 
     for name, is_right in (("Held", True), ("Twice", False)):
-        with opened(archive(name), {}, by=HELD_BY) as point:
-            assert variational.SeriesMotion(point, [], HELD_BY, 1e-8).starts_consistently() == is_right
+        with opened(archive(name), {}, by=CONSTRAINED_BY) as point:
+            assert variational.SeriesMotion(point, [], CONSTRAINED_BY, 1e-8).starts_consistently() == is_right
 
 
 def test_flat_positions(lagrange_fmu):  # noqa: F811
@@ -257,7 +257,7 @@ def test_systems_without_variational_equations(lagrange_fmu, tmp_path):  # noqa:
     """lagc reports an error, so that the package uses another method."""
     from lagrange_fmu.variational import _indicators_of
 
-    massless = HELD.replace("</system>", '<coordinate name="z" velocity="vz" unit="m"/><constraint name="same" unit="m">z - x</constraint></system>')
+    massless = CONSTRAINED.replace("</system>", '<coordinate name="z" velocity="vz" unit="m"/><constraint name="same" unit="m">z - x</constraint></system>')
     for text, by, why in ((massless, "l", "does not support coordinates without mass"), (BALL, "g", None), (OSCILLATOR, "kk", "--along kk: expected a parameter"), (OSCILLATOR, "k", None)):  # fmt: skip
         (tmp_path / "system.xml").write_text(text)
         result = subprocess.run([fmu.LAGC, tmp_path / "system.xml", "-o", tmp_path, "--along", by], capture_output=True, text=True)

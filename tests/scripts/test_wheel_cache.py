@@ -87,7 +87,7 @@ with caching.first_build("win64", lambda text: print(text, flush=True)):
     second = threading.Thread(target=second_build)
     second.start()
     assert waits.wait(20) and reported == ["another build compiles the C library of win64; waiting for it to end ..."]
-    first.communicate("go on\n", timeout=20)
+    first.communicate("continue\n", timeout=20)
     second.join(20)
     assert reported[1:] == ["built"]
     with caching.first_build("win64", reported.append):

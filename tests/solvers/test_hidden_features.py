@@ -223,7 +223,7 @@ def test_a_polynomial_motion_takes_one_step(open_fmu):
     instance = open_fmu("Throw").initialize(tolerance=1e-10)
     rows = instance.run(10.0, 0.01, "x")
     assert rows[-1][1] == pytest.approx(1 + 2 * 10 - 9.81 * 50, rel=1e-14)
-    assert instance.fmu.getInteger(instance.vr("solverSteps")) == [1], "the first series goes on"
+    assert instance.fmu.getInteger(instance.vr("solverSteps")) == [1], "one series covers the whole motion"
 
 
 def test_a_whole_exponent_may_be_a_parameter(open_fmu):

@@ -89,7 +89,7 @@ def rates_of(q, omega):
 
 def test_one_body_in_three_ways(open_fmu):
     """Euler angles, a quaternion, and particles on rods give the same accelerations at random states."""
-    angles, parts, held = (open_fmu(name) for name in ("HungByAngles", "HungByQuaternion", "HungByRods"))
+    angles, parts, constrained = (open_fmu(name) for name in ("HungByAngles", "HungByQuaternion", "HungByRods"))
     random = np.random.default_rng(7)
     for _ in range(50):
         euler, euler_rates = random.uniform(0.3, 2.8, 3), random.uniform(-3, 3, 3)
@@ -109,13 +109,13 @@ def test_one_body_in_three_ways(open_fmu):
         for i, place in enumerate(PLACES):
             values |= dict(zip([f"x{i}", f"y{i}", f"z{i}"], turn.apply(place)))
             values |= dict(zip([f"vx{i}", f"vy{i}", f"vz{i}"], turn.apply(np.cross(omega, place))))
-        state(held, values)
-        expected = held.get("der(vx0)", "der(vy0)", "der(vz0)")
+        state(constrained, values)
+        expected = constrained.get("der(vx0)", "der(vy0)", "der(vz0)")
         for instance in (angles, parts):
             np.testing.assert_allclose(instance.get("place.ax", "place.ay", "place.az"), expected, rtol=1e-9, atol=1e-9)
         rotations = [f"body.{name}{axis}" for name in ("omega", "alpha") for axis in "XYZ"]
         np.testing.assert_allclose(angles.get(*rotations), parts.get(*rotations), rtol=1e-9, atol=1e-9)
-        assert angles.get("totalEnergy") == pytest.approx(held.get("totalEnergy"), abs=1e-11)
+        assert angles.get("totalEnergy") == pytest.approx(constrained.get("totalEnergy"), abs=1e-11)
 
 
 TOP = dict(m=0.4, l=0.12, I1=9e-4, I3=7e-4, g=9.3)

@@ -69,10 +69,10 @@ IN_FRAME = """<frame name="elbow" in="upper"> <translate y="-0.5"/> <rotate axis
   <body name="lower" in="elbow" mass="1" x="0.1" y="-0.4" Izz="0.07"/>"""
 BY_HAND = """<body name="lower" mass="1" inertia="0.07" angle="p + q"
         x="sin(p) + 0.4*sin(p + q) + 0.1*cos(p + q)" y="-cos(p) - 0.4*cos(p + q) + 0.1*sin(p + q)"/>"""
-ROTOR = """<system name="SpatialRotor" description="Rotor out of balance: {way} tell what its bearing holds">
+ROTOR = """<system name="SpatialRotor" description="Rotor out of balance: {way} give the load of its bearing">
   <input name="tau"/>
   <coordinate name="phi" velocity="w" start="0.3" velocityStart="5"/>
-  {held}
+  {bearing}
   <frame name="shaft"> <translate x="h" z="v"/> <rotate axis="x" angle="tilt"/> <rotate axis="z" angle="phi"/> </frame>
   <body name="rotor" in="shaft" mass="2" x="0.1" z="0.2" Ixx="0.1" Iyy="0.15" Izz="0.2" Ixz="0.03"/>
   <torque on="rotor" x="0.7" z="tau" in="shaft"/>
@@ -80,7 +80,7 @@ ROTOR = """<system name="SpatialRotor" description="Rotor out of balance: {way} 
   <gravity z="-9.81"/>
 </system>
 """
-HELD = {
+BEARINGS = {
     "displacements": '<displacement name="h"/><displacement name="v"/><displacement name="tilt"/>',
     "drives": "".join(f'<coordinate name="{x}" velocity="der{x}" acceleration="0"/>' for x in ("h", "v", "tilt")),
 }
@@ -112,7 +112,7 @@ TEXTS = {
     "MovedFrame": MOVED,
     "PlanarFrame": PLANAR.format(lower=IN_FRAME, height="lower.y"),
     "PlanarByHand": PLANAR.format(lower=BY_HAND, height="lower.y").replace("PlanarFrame", "PlanarByHand"),
-    **{f"Rotor{way}": ROTOR.format(way=way, held=held).replace("SpatialRotor", f"Rotor{way}") for way, held in HELD.items()},
+    **{f"Rotor{way}": ROTOR.format(way=way, bearing=bearing).replace("SpatialRotor", f"Rotor{way}") for way, bearing in BEARINGS.items()},
 }
 
 
@@ -170,7 +170,7 @@ def test_accelerations_of_an_arm(open_fmu):
         assert np.allclose(got, expected, rtol=1e-10, atol=1e-10 * np.max(np.abs(expected)))
 
 
-def test_what_is_told_of_an_arm(open_fmu):
+def test_components_of_an_arm(open_fmu):
     """Positions and rotations agree with their formulas, velocities and accelerations with differences along the motion."""
     instance = open_fmu("SpatialArm").initialize({"va": 1.5, "vb": -2.0, "tau": 0.3}, tolerance=1e-12)
     step = 1e-3

@@ -86,8 +86,8 @@ def simulate(name, outputs, **words):
 def test_joint_obeys_newton_and_euler(joints, name):
     """One component of the torque of a universal joint, or of a screw, gives the whole torque by the geometry."""
     system, kind = name, name.split("_")[1]
-    held = TYPES[kind].split()
-    forces = [f"hinge.{'torque' + name[-1] if 'about' in name else 'force' + name.upper()}" for name in held]
+    constrained = TYPES[kind].split()
+    forces = [f"hinge.{'torque' + name[-1] if 'about' in name else 'force' + name.upper()}" for name in constrained]
     names = [f"{of}{q}" for of in ("", "v") for q in "xyzabcd"] + [f"der(v{q})" for q in "xyz"] + [f"rod.{of}{q}" for of in ("omega", "alpha") for q in "XYZ"]
     result = simulate(system, [*names, *forces, "totalEnergy"])
     assert np.ptp(result["totalEnergy"]) < 1e-8
@@ -97,9 +97,9 @@ def test_joint_obeys_newton_and_euler(joints, name):
         place, grip = np.array([row[q] for q in "xyz"]), body.apply(GRIP)
         between, relative = WALL_ROTATED.inv().apply(place + grip - WALL), (WALL_ROTATED.inv() * body * GRIP_ROTATED).as_matrix()
         misfit = dict(zip("xyz", between)) | {"aboutX": relative[1, 2], "aboutY": relative[0, 2], "aboutZ": relative[1, 0] if kind != "universal" else relative[0, 1]}
-        assert max(abs(misfit[name]) for name in held if (kind, name) != ("screw", "z")) < 1e-9
+        assert max(abs(misfit[name]) for name in constrained if (kind, name) != ("screw", "z")) < 1e-9
         force, torque = np.zeros(3), np.zeros(3)
-        for name, of in zip(held, forces):
+        for name, of in zip(constrained, forces):
             along = -row[of] * WALL_ROTATED.as_matrix()[:, "XYZ".index(name[-1].upper())]
             if kind == "universal" and name == "aboutZ":
                 # The torque acts about the common normal of the x axis of the wall and the y axis of the grip.

@@ -113,10 +113,10 @@ def accelerations(mu, inertia, points, y, creep):
     load = np.r_[M * G * np.sin(SLOPE), 0, -M * G * np.cos(SLOPE), -np.cross(spin, moments @ spin)]
     arms = points @ turn.T
     slip = velocity + np.cross(spin, arms)
-    pushes = np.c_[-mu * slip[:, :2] / np.sqrt((slip[:, :2] ** 2).sum(axis=1) + creep**2)[:, None], np.ones(len(points))]
-    gaps, pushes = (np.c_[p, np.cross(arms, p)] for p in (np.tile([0, 0, 1], (len(points), 1)), pushes))
+    directions = np.c_[-mu * slip[:, :2] / np.sqrt((slip[:, :2] ** 2).sum(axis=1) + creep**2)[:, None], np.ones(len(points))]
+    gaps, directions = (np.c_[p, np.cross(arms, p)] for p in (np.tile([0, 0, 1], (len(points), 1)), directions))
     lacks = np.cross(spin, np.cross(spin, arms))[:, 2] + 20 * slip[:, 2] + 100 * (y[2] + arms[:, 2])
-    free, answer = np.linalg.solve(mass, load), np.linalg.solve(mass, pushes.T)
+    free, answer = np.linalg.solve(mass, load), np.linalg.solve(mass, directions.T)
     return free + answer @ np.linalg.solve(gaps @ answer, -gaps @ free - lacks)
 
 

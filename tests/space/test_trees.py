@@ -93,15 +93,15 @@ def test_cost_grows_as_the_chain(tmp_path):
     assert operations[1] - operations[0] < 1.05 * 100 * (224 + 205)
 
 
-def absolute_accelerations(angles, rates, held=None):
-    """Accelerations of the angles from the vertical; held: the driven joint, and its acceleration."""
+def absolute_accelerations(angles, rates, prescribed=None):
+    """Accelerations of the angles from the vertical; prescribed: the joint whose motion is prescribed, and its acceleration."""
     n = LINKS
     share = n - np.maximum.outer(np.arange(n), np.arange(n))  # number of bobs that both rods carry
     apart = np.subtract.outer(angles, angles)
     mass, right = share * np.cos(apart), -(share * np.sin(apart)) @ rates**2 - 9.81 / 0.7 * np.diag(share) * np.sin(angles)
-    if held is None:
+    if prescribed is None:
         return np.linalg.solve(mass, right)
-    joint, acceleration = held
+    joint, acceleration = prescribed
     row = np.zeros(n)
     row[joint], row[joint - 1] = 1, -1
     bordered = np.block([[mass, row[:, None]], [row[None], np.zeros((1, 1))]])
@@ -161,7 +161,7 @@ def wrist(axes):
       <gravity z="-9.81"/><experiment stopTime="1"/></system>"""
 
 
-def test_pole_about_oblique_axes(open_fmu):
+def test_pole_about_tilted_axes(open_fmu):
     """The first and the third axis of the hand are parallel at 0, where the inertia is 0 up to rounding."""
     build_systems("trees-pole", {"Wrist": wrist(["1 2 -0.5", "-2 1 0.3", "1 2 -0.5"])})
     instance = open_fmu("Wrist")
@@ -181,7 +181,7 @@ def test_constraints_that_follow_from_each_other(open_fmu):
     constraints = ['<constraint name="k">q1 - q2/2</constraint>', '<constraint name="l">2*q1 - q2</constraint>']
     text = wrist(["x", "y", "z"]).replace("<gravity", "{}<gravity")
     texts = {name: text.replace("Wrist", name).format("".join(parts)) for name, parts in {"HeldOnce": constraints[:1], "HeldTwice": constraints}.items()}
-    build_systems("trees-held", texts)
+    build_systems("trees-prescribed", texts)
     start = {"q1": 0.2, "q2": 0.4, "q8": 0.5, "w1": 0.3, "w2": 0.6, "w5": 1.0, "w9": 2.0}
     rates = [open_fmu(name).initialize(start).get(*[f"der(w{i})" for i in range(1, 10)]) for name in texts]
     np.testing.assert_allclose(*rates, rtol=1e-9, atol=1e-9)

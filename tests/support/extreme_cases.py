@@ -433,17 +433,17 @@ CASES = [
            "parabola; the azimuth turns by pi within d / speed", throw_error, bound, work, 1e-13)
       for d, bound, work in ((1e-3, 1e-9, 1000), (1e-6, 1e-6, 2000), (1e-9, 1e-3, 3000))),
     Case("throw through the pole", "ParticleSpherical", pole(0.0) | dict(theta=0.0, omegaTheta=0.0, omegaPhi=-pole(0.0)["omegaPhi"], vr=-pole(0.0)["vr"]) , 1.0, 0.05,
-         "parabola: without azimuthal rate phi goes on below 0", throw_error, 1e-9, 1000, 1e-13),
+         "parabola: without azimuthal rate phi continues below 0", throw_error, 1e-9, 1000, 1e-13),
     Case("start at the pole", "ParticleSpherical", dict(phi=0.0, omegaTheta=1.0), 1.0, 0.1,
          "the azimuth does not exist", rejected="mass matrix is singular.*'theta'", exchange=0.0),
     # --- Stiff springs.
     *(Case(f"spring of {k:g} N/m, critical damping", "ElasticPendulum", dict(m=1.0, l0=1.0, k=k, c=2 * np.sqrt(k), r=1.0 + 9.81 * np.cos(0.5) / k, theta=0.5), 5.0, 0.01,
            "rigid pendulum, up to m g / k", rigid_error, max(100 / k, 1e-7), 2000, 1e-8, exchange=max(100 / k, 1e-4)) for k in (1e4, 1e6, 1e8, 1e10)),
     *(Case(f"spring of {k:g} N/m, undamped bounce, by taylor", "BouncingSpring", dict(m=1.0, l0=1.0, k=k, c=0.0, r=1.0, theta=0.0), 1.0, 0.01,
-           "the bounce goes on: its own energy is kept", bounce_error, bound, int(max(300, np.sqrt(k))), 1e-15)
+           "the bounce continues and conserves its energy", bounce_error, bound, int(max(300, np.sqrt(k))), 1e-15)
       for k, bound in ((1e4, 1e-9), (1e6, 1e-8), (1e8, 1e-6), (1e10, 1e-4))),
     *(Case(f"spring of {k:g} N/m, undamped bounce, by auto", "ElasticPendulum", dict(m=1.0, l0=1.0, k=k, c=0.0, r=1.0, theta=0.0), 1.0, 0.01,
-           "the bounce goes on: its own energy is kept", bounce_error, bound, work, 1e-10)
+           "the bounce continues and conserves its energy", bounce_error, bound, work, 1e-10)
       for k, bound, work in ((1e4, 1e-3, 10000), (1e6, 1e-2, 100000), (1e8, 1e-2, 500000))),
     # --- Fast pivots.
     *(Case(f"pivot at {w:g} rad/s", "RotatingPivotPendulum", spinning(w), 2.0, 0.01,

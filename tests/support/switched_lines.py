@@ -36,13 +36,13 @@ class Line:
     def gap(self, z):
         return self.gaps @ z[: self.n] + self.offsets
 
-    def held(self, closed, modes):
+    def closed_rows(self, closed, modes):
         """Rows of the active constraints: closed contacts, then sticking frictions."""
         return np.vstack([self.gaps[list(closed)], self.rows[[i for i, mode in enumerate(modes) if mode == 0]]])
 
     def linear(self, closed, modes):
         """Accelerations, and forces along the active rows, as matrices that multiply z."""
-        rows = self.held(closed, modes)
+        rows = self.closed_rows(closed, modes)
         load = self.load.copy()
         for i, mode in enumerate(modes):
             load[:, 2 * self.n] -= mode * self.friction[i] * self.rows[i]
@@ -117,7 +117,7 @@ class Line:
                 for closed in itertools.combinations(close, count):
                     trial = modes.copy()
                     trial[slow] = choice
-                    rows = self.held(closed, trial)
+                    rows = self.closed_rows(closed, trial)
                     redundant |= np.linalg.matrix_rank(rows) < len(rows)
                     accelerations, forces = self.linear(closed, trial)
                     ahead = expm(self.flow(accelerations) * AHEAD) @ z

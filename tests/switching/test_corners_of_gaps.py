@@ -12,8 +12,8 @@ import fmu
 from fmu import DISCARD, build_systems
 
 BODY = '<coordinate name="x" velocity="v" {0}/><coordinate name="y" velocity="w" {1}/><particle mass="1" x="x" y="y"/>'
-PUSHES = '<force coordinate="x">-0.1</force><force coordinate="y">-2</force>'
-SLIDES = BODY.format('start="1" velocityStart="-1"', "") + PUSHES
+FORCES = '<force coordinate="x">-0.1</force><force coordinate="y">-2</force>'
+SLIDES = BODY.format('start="1" velocityStart="-1"', "") + FORCES
 FALLS = BODY.format('start="-1" velocityStart="1"', 'start="1"') + '<force coordinate="y">-2</force>'
 REACHED = 10 * (np.sqrt(1.2) - 1)  # solves 1 - t - 0.05 t^2 = 0
 # The gap, its piecewise function in the message, and the time at which the corner is reached; None if bounces do not end before.

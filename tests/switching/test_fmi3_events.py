@@ -80,7 +80,7 @@ def go_through(instance, updates=1):
 
 def start(opened, name, values=(), **options):  # noqa: F811
     instance = opened(name, **(EVENTS | options)).initialize(values)
-    assert not go_through(instance), "the start has been settled in initialization mode"
+    assert not go_through(instance), "the start is resolved in initialization mode"
     return instance
 
 
@@ -184,21 +184,21 @@ def test_a_state_at_an_event_is_kept(opened):
     state, time = instance.fmu.getFMUState(), instance.time
     bytes_ = instance.fmu.serializeFMUState(state)
 
-    def go_on(one):
+    def continue_run(one):
         one.time = time
         one.fmu.enterEventMode()
         go_through(one)
         to(one, time + 2)
         return one.get("totalEnergy", "time").tobytes()
 
-    first = go_on(instance)
+    first = continue_run(instance)
     instance.fmu.setFMUState(state)
-    assert go_on(instance) == first
+    assert continue_run(instance) == first
     instance.fmu.freeFMUState(state)
     other = start(opened, "NewtonsCradle")
     copy = other.fmu.deserializeFMUState(bytes_)
     other.fmu.setFMUState(copy)
-    assert go_on(other) == first
+    assert continue_run(other) == first
     other.fmu.freeFMUState(copy)
     plain = opened("NewtonsCradle").initialize()
     with pytest.raises(FMICallException):
@@ -233,7 +233,7 @@ def test_fmpy_goes_through_events(name):
     words = dict(stop_time=2.0, output_interval=0.1, output=fmu.names_of(name, "output"))
     plain = fmpy.simulate_fmu(str(fmi3.unpacked(name)), **words)
     events = fmpy.simulate_fmu(str(fmi3.unpacked(name)), use_event_mode=True, early_return_allowed=True, **words)
-    assert len(events) > len(plain), "events are told at their times"
+    assert len(events) > len(plain), "the importer sees the times of events"
     for variable in words["output"]:
         last = [np.asarray(result[variable])[-1] for result in (events, plain)]
         assert last[0] == pytest.approx(last[1], abs=1e-10)

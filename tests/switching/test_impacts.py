@@ -276,8 +276,8 @@ def test_forces_of_sliding_contacts_are_unique_or_an_error(open_fmu):
         for _ in range(3):
             case.v -= np.linalg.pinv(case.n[:k]) @ (case.n[:k] @ case.v)
         inverse = np.linalg.inv(case.mass)
-        pushes = case.n[:k].T - case.t[:k].T * (np.sign(case.t[:k] @ case.v) * case.mu[:k])
-        s, free = case.n[:k] @ inverse @ pushes, case.n[:k] @ inverse @ case.force
+        directions = case.n[:k].T - case.t[:k].T * (np.sign(case.t[:k] @ case.v) * case.mu[:k])
+        s, free = case.n[:k] @ inverse @ directions, case.n[:k] @ inverse @ case.force
         found = motions(free, s)
         counts[min(len(found), 2)] += 1
         try:

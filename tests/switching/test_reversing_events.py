@@ -77,14 +77,14 @@ class Integrator:
         self.version, self.instance = version, module.Instance(name, kind=kind).initialize(values)
         self.model, self.time = self.instance.fmu, 0.0
         self.count = 2
-        self.settle()
+        self.resolve_event()
 
     def update(self):
         if self.version == 3:
             return self.model.updateDiscreteStates()[0]
         return self.model.newDiscreteStates()[0] == 1
 
-    def settle(self):
+    def resolve_event(self):
         while self.update():
             pass
         self.model.enterContinuousTimeMode()
@@ -108,7 +108,7 @@ class Integrator:
             called = self.model.completedIntegratorStep()[0]
             if called or before[0] * self.vector("getEventIndicators", 1)[0] < 0:
                 self.model.enterEventMode()
-                self.settle()
+                self.resolve_event()
 
     def get(self, *names):
         return list(self.instance.get(*names))
@@ -143,7 +143,7 @@ def test_a_zero_that_an_input_moves_is_no_lateness(version):
     importer.to(0.5, 0.1)
     importer.model.enterEventMode()
     importer.instance.set({"u": 0.1})
-    importer.settle()
+    importer.resolve_event()
     assert importer.get("x", "v", "n") == pytest.approx([0.5, -0.7, 1], abs=1e-15)
     importer.to(1.5, 0.1)
     back = 0.4 / 0.7

@@ -32,7 +32,7 @@ PUSH = """<system name="{name}">
   <output name="y" unit="m/s2">3*a + fixed*a</output>
 </system>
 """
-PUSHES = """<system name="StartPushes">
+TWO_FORCES = """<system name="StartPushes">
   <parameter name="F" start="10" unit="N"/>
   <include file="../StartPush/system.xml" as="one"><mode name="a" start="2*F/(5*kilo)"/></include>
   <include file="../StartPush/system.xml" as="two"><parameter name="F" value="F"/></include>
@@ -57,7 +57,7 @@ KINDS = pytest.mark.parametrize("kind", [{}, {"kind": FMU2Model}], ids=["cs", "m
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"StartPush": PUSH.format(name="StartPush"), "StartPushes": PUSHES, "StartLines": LINES, "StartLinearPush": LINEAR}
+    texts = {"StartPush": PUSH.format(name="StartPush"), "StartPushes": TWO_FORCES, "StartLines": LINES, "StartLinearPush": LINEAR}
     fmu.build_systems("modes-start", texts, versions=(2, 3))
     fmu.build_systems("modes-start-tables", {"StartPushTables": PUSH.format(name="StartPushTables")}, "--form", "tables", versions=(2, 3))
 

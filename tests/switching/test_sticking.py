@@ -131,10 +131,10 @@ def test_in_fmi_3():
 
 def test_in_ensembles():
     """Slip starts later for a smaller push."""
-    pushes = np.linspace(1.5, 2.5, 5)
-    values, _ = ensemble(gear_name("3", "Sign"), ["push"], ["w1", "sign2"], [2.0, 4.0]).run([[push] for push in pushes])
+    forces = np.linspace(1.5, 2.5, 5)
+    values, _ = ensemble(gear_name("3", "Sign"), ["push"], ["w1", "sign2"], [2.0, 4.0]).run([[push] for push in forces])
     assert not np.any(values[:, 0, 1])
-    for push, (velocity, sign) in zip(pushes, values[:, 1]):
+    for push, (velocity, sign) in zip(forces, values[:, 1]):
         slip = 1 + 2.5 / push
         expected = push / 2 * (9 - (slip - 1) ** 2) - (4 - slip)
         assert (velocity, sign) == pytest.approx((-expected / (1 + 1.5 / 9), -1), abs=1e-9)

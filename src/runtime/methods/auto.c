@@ -48,7 +48,7 @@ enum {
   LONG_STAY = 256 /* minimum stay of Radau IIA if it was left soon: first, and limit of doubling */
 };
 /* Work of the series before the next trial, as a multiple of the failed trial's work: first, and limit of doubling. */
-enum { SHORT_PATIENCE = 2, LONG_PATIENCE = 256 };
+enum { FIRST_WAIT_FACTOR = 2, WAIT_FACTOR_LIMIT = 256 };
 static const double LARGEST_WORK = 1e15; /* plausibility limit of restored counters: days of work */
 static const double GROWTH = 1.25;       /* of speed from window to window that keeps a trial alive */
 static const double FIRST_GROWTH = 8.0;  /* largest ratio of the first Radau step to the last Taylor step */
@@ -58,8 +58,8 @@ struct AutoSaved {
   int64_t method;          /* enum AutoMethod: the active one */
   int64_t steps, restarts; /* in the window; inputs that change cause restarts */
   int64_t windows;         /* since the last handover */
-  int64_t patience;        /* windows before the next check of the coefficients */
-  int64_t next_patience;   /* multiple of a failed trial's work that the series do before the next one */
+  int64_t wait;            /* windows before the next check of the coefficients */
+  int64_t wait_factor;     /* multiple of a failed trial's work that the series do before the next one */
   int64_t stay;            /* minimum stay of Radau IIA, in windows */
   int64_t is_trial;        /* 1 until Radau IIA has been faster than the series */
   int64_t crosses;         /* 1 if the last Taylor step crossed a point without a series */
@@ -88,10 +88,10 @@ static size_t auto_saved_size(void) {
 }
 
 static bool are_possible_counts(const struct AutoSaved *choice) {
-  const int64_t counts[] = {choice->steps, choice->restarts,      choice->windows, choice->patience,
-                            choice->stay,  choice->next_patience, choice->crosses, choice->is_trial};
+  const int64_t counts[] = {choice->steps, choice->restarts,    choice->windows, choice->wait,
+                            choice->stay,  choice->wait_factor, choice->crosses, choice->is_trial};
   return snapshot_are_counts(counts, sizeof counts / sizeof *counts) && choice->steps <= window[choice->method] &&
-         choice->next_patience <= 2 * LONG_PATIENCE && choice->stay <= 4 * LONG_STAY && choice->is_trial <= 1 &&
+         choice->wait_factor <= 2 * WAIT_FACTOR_LIMIT && choice->stay <= 4 * LONG_STAY && choice->is_trial <= 1 &&
          choice->crosses <= 1;
 }
 
@@ -245,12 +245,12 @@ static bool series_are_slow(struct Instance *instance, struct AutoSaved *choice,
 }
 
 static bool judge_series(struct Instance *instance, struct AutoSaved *choice, double progress) {
-  if (choice->patience > 0) {
-    choice->patience--;
+  if (choice->wait > 0) {
+    choice->wait--;
     return false;
   }
   if (!series_are_slow(instance, choice, progress)) {
-    choice->patience = choice->windows / 4 < LONGEST_WAIT ? choice->windows / 4 : LONGEST_WAIT;
+    choice->wait = choice->windows / 4 < LONGEST_WAIT ? choice->windows / 4 : LONGEST_WAIT;
     return false;
   }
   choice->taylor_speed = progress / choice->work;
@@ -268,8 +268,8 @@ static bool judge_trial(const struct Instance *instance, struct AutoSaved *choic
   choice->last_speed = speed;
   if (speed > other) choice->is_trial = 0;
   if (speed > other || choice->windows <= WARM_UP || grows) return false;
-  choice->patience = (int64_t)((double)choice->next_patience * choice->trial_work / window_of_series);
-  choice->next_patience *= choice->next_patience < LONG_PATIENCE ? 2 : 1;
+  choice->wait = (int64_t)((double)choice->wait_factor * choice->trial_work / window_of_series);
+  choice->wait_factor *= choice->wait_factor < WAIT_FACTOR_LIMIT ? 2 : 1;
   return true;
 }
 
@@ -279,7 +279,7 @@ static bool judge_radau(const struct Instance *instance, struct AutoSaved *choic
   if (choice->taylor_rate == 0.0) choice->taylor_rate = choice->rate;
   other *= choice->rate > 0.0 ? choice->taylor_rate / choice->rate : INFINITY;
   if (choice->is_trial) return judge_trial(instance, choice, speed, other);
-  choice->next_patience = SHORT_PATIENCE;
+  choice->wait_factor = FIRST_WAIT_FACTOR;
   if (choice->windows <= choice->stay || speed > 0.8 * other) return false;
   bool is_soon = choice->windows < 2 * choice->stay + SHORT_STAY;
   choice->stay = is_soon ? (choice->stay < LONG_STAY ? 2 * choice->stay + SHORT_STAY : choice->stay) : choice->stay / 2;
@@ -289,7 +289,7 @@ static bool judge_radau(const struct Instance *instance, struct AutoSaved *choic
 /* True if the other method is to take over at the end of the last step. */
 static bool judge(struct Instance *instance, struct AutoSaved *choice) {
   double time = instance->fmu_state->last_step.end;
-  if (choice->next_patience == 0) choice->next_patience = SHORT_PATIENCE;
+  if (choice->wait_factor == 0) choice->wait_factor = FIRST_WAIT_FACTOR;
   if (choice->steps == 0) begin_window(choice, time);
   if (choice->steps < window[choice->method]) return false;
   choice->windows++;
