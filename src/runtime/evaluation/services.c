@@ -9,7 +9,7 @@
 #include "instance/active_constraints.h"
 #include "instance/projection.h"
 
-const char solver_resting[] = "the step size fell below the resolution of time, as at a singularity";
+const char solver_vanished_step[] = "the step size fell below the resolution of time, as at a singularity";
 
 void solver_move_point(struct Instance *instance, struct Point *point, double time, const double *state) {
   point->time = time;
@@ -110,7 +110,7 @@ bool solver_is_out_of_memory(const struct Instance *instance) {
   return false;
 }
 
-bool solver_rests(double time, double step) {
+bool solver_step_vanishes(double time, double step) {
   return step <= 8 * DBL_EPSILON * fabs(time);
 }
 

@@ -36,12 +36,12 @@ void solver_free_memory(struct Instance *instance);
 bool solver_is_out_of_memory(const struct Instance *instance);
 
 /* True if a step is only a few units in the last place of the time. */
-bool solver_rests(double time, double step);
+bool solver_step_vanishes(double time, double step);
 
 /* Returns the error that the method may make in a coordinate inside a step; 0 if rounding is the only error. */
 double solver_error(const struct Instance *instance);
 
-/* The reason that is logged if solver_rests(). */
-extern const char solver_resting[];
+/* The reason that is logged if solver_step_vanishes(). */
+extern const char solver_vanished_step[];
 
 #endif

@@ -200,7 +200,7 @@ static void search_further(struct Instance *instance, const struct Communication
 static bool go_nearer(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
   double step_limit = (instance->fmu_state->last_step.end - progress->searched) / NEARER;
   if (progress->unsure > UNSURE_LIMIT || ++progress->nearer > NEARER_LIMIT) return false;
-  if (solver_rests(progress->searched, step_limit)) return false;
+  if (solver_step_vanishes(progress->searched, step_limit)) return false;
   if (!lagrangian.solver->interpolate(instance, progress->searched, instance->event_state)) return false;
   progress->step_limit = step_limit;
   return start_anew(instance, step, progress->searched) == NULL;
@@ -221,7 +221,7 @@ static void count_event(const struct Instance *instance, const struct Communicat
                         size_t indicator, struct EventProgress *progress) {
   double since_last = progress->last > 0.0 ? time - (step->start + progress->last) : 0.0;
   bool is_at_rest = instance->was_at_zero && !is_bounce(instance, indicator);
-  bool is_close = is_at_rest || solver_rests(time, time - progress->searched);
+  bool is_close = is_at_rest || solver_step_vanishes(time, time - progress->searched);
   bool is_close_to_last = is_at_rest && indicator == progress->indicator && progress->count > 0 &&
                           time - (step->start + progress->last) <= close_share * fabs(time);
   progress->close_events = is_close ? progress->close_events + 1 : 0;
@@ -290,8 +290,10 @@ static const char *report_zeno(struct Instance *instance, const struct Communica
   if (is_at_corner(instance, progress->searched, indicator)) return touched_corner;
   name_indicator(indicator, name, sizeof name);
   if (!is_of_contact(indicator)) {
-    log_message(instance, STATUS_DISCARD, "time %.15g: %s switches without end (Zeno behaviour)", progress->searched,
-                name);
+    log_message(
+        instance, STATUS_DISCARD,
+        "time %.15g: %s switches without end (Zeno behaviour); expected a switch with hysteresis, or other parameters",
+        progress->searched, name);
     return gathering;
   }
   log_message(instance, STATUS_DISCARD,
@@ -362,7 +364,7 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
   bool is_branch = progress->indicator < lagrangian.switches->branch_count;
   if (2 * progress->count < step->count) return;
   name_indicator(progress->indicator, name, sizeof name);
-  log_message(instance, STATUS_DISCARD, "time %g: %ld events in the step, the last of %s%s",
+  log_message(instance, STATUS_DISCARD, "time %g: the step has %ld events, the last of %s%s",
               instance->fmu_state->last_step.end, progress->count, name,
               is_branch ? " as when the motion chatters about its zero" : "");
 }

@@ -416,7 +416,7 @@ static const char *radau_advance(struct Instance *instance, const struct Communi
   bool failed = false;
   double step = trial_step(instance, radau, time, communication->end - communication->start);
   for (int attempt = 0; attempt < ATTEMPT_LIMIT; attempt++) {
-    if (solver_rests(time, step)) return solver_resting;
+    if (solver_step_vanishes(time, step)) return solver_vanished_step;
     double contraction = saved->contraction, error = 1.0;
     int iterations = 0;
     if (radau_systems_factor(&radau->systems, method, step))

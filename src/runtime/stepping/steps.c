@@ -99,7 +99,9 @@ static const char *excess(const struct CommunicationStep *step, double work) {
     return work < WORK_LIMIT ? NULL
                              : "the limit of work in one communication step, about 10 s, is reached; expected a "
                                "shorter step, or a larger maxSteps of <solver>";
-  return step->count < lagrangian.steps.max_steps ? NULL : "maxSteps of <solver> is reached in one communication step";
+  return step->count < lagrangian.steps.max_steps ? NULL
+                                                  : "maxSteps of <solver> is reached in one communication step; "
+                                                    "expected a shorter step, or a larger maxSteps";
 }
 
 /* Checks limits of steps and work; warns of slowness once. Returns NULL, or the reason for giving up. */
@@ -131,8 +133,8 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   course->ends_at_event = problem != barrier;
   if (problem != NULL) return problem;
   step->count++;
-  course->resting = solver_rests(last->start, last->end - last->start) ? course->resting + 1 : 0;
-  return course->resting < RESTING_STEP_LIMIT ? NULL : solver_resting;
+  course->resting = solver_step_vanishes(last->start, last->end - last->start) ? course->resting + 1 : 0;
+  return course->resting < RESTING_STEP_LIMIT ? NULL : solver_vanished_step;
 }
 
 /* Handles the next event in the solver's last step, which then ends there. Returns NULL, or the reason for stopping. */
@@ -275,16 +277,16 @@ static enum Status check_step(struct Instance *instance, double time, double siz
   const struct FmuState *fmu_state = instance->fmu_state;
   if (!isfinite(time)) return reject_call(instance, "currentCommunicationPoint is %g; expected a finite time", time);
   if (!isfinite(size) || size <= 0.0)
-    return reject_call(instance, "step %g at time %g; expected a finite step larger than 0", size, time);
+    return reject_call(instance, "the step is %g at time %g; expected a finite one larger than 0", size, time);
   double rounding = 8 * DBL_EPSILON * fabs(time) + 1e-6 * size;
   if (fabs(time - fmu_state->time) > rounding)
     return reject_call(instance, "currentCommunicationPoint is %.15g; expected %.15g, where the instance is", time,
                        fmu_state->time);
   if (time + size <= time)
-    return reject_call(instance, "step %g does not advance the time %g; expected a larger one", size, time);
+    return reject_call(instance, "the step %g does not advance the time %g; expected a larger one", size, time);
   if (!isfinite(time + size))
-    return reject_call(instance, "step %g from time %g ends beyond the largest number; expected a shorter one", size,
-                       time);
+    return reject_call(instance, "the step %g from time %g ends beyond the largest number; expected a shorter one",
+                       size, time);
   double allowed = fmax(rounding, rounding_of_sum(fmu_state, time + size, size));
   if (fmu_state->stop_time_defined && time + size - fmu_state->stop_time > allowed)
     return reject_call(instance, "the step ends at %.15g; expected none past stopTime %.15g", time + size,

@@ -97,7 +97,7 @@ static const char *limit_by_functions(struct Instance *instance, const struct Bd
   if (CVodeGetLastStep(bdf->cvode, &last) < 0) return "CVODE failed to return its last step";
   double bound = last > 0.0 ? 100.0 * last : 2.0 * (end - time);
   double longest = sundials_longest_step(instance, time, bound);
-  if (longest < bound && solver_rests(time, longest)) return solver_resting;
+  if (longest < bound && solver_step_vanishes(time, longest)) return solver_vanished_step;
   return CVodeSetStopTime(bdf->cvode, time + longest) >= 0 ? NULL : "CVODE failed to set the stop time";
 }
 
@@ -113,7 +113,7 @@ const char *bdf_advance(struct Instance *instance, const struct CommunicationSte
   if (CVode(bdf->cvode, step->end, bdf->sundials.state, &time, CV_ONE_STEP) < 0) return "steps were rejected too often";
   if (CVodeGetLastStep(bdf->cvode, &made) < 0) return "CVODE failed to return its last step";
   /* CVODE accepts steps that are too short to change the time, as where a root ends. */
-  if (made > 0.0 && before + made == before) return solver_resting;
+  if (made > 0.0 && before + made == before) return solver_vanished_step;
   fmu_state->last_step = (struct Span){before, time};
   fmu_state->statistics[STATISTIC_STEPS]++;
   return NULL;

@@ -119,7 +119,7 @@ static const char *advance(struct Instance *instance, const struct Communication
   double before = fmu_state->last_step.end, rest = step->end - before, time = before;
   if (sundials_tiny_step(instance, step)) return NULL;
   double longest = sundials_longest_step(instance, before, rest);
-  if (longest < rest && solver_rests(before, longest)) return solver_resting;
+  if (longest < rest && solver_step_vanishes(before, longest)) return solver_vanished_step;
   N_VScale(1.0, state, erk->before);
   for (;;) {
     ERKStepSetStopTime(erk->arkode, fmin(before + longest, step->end));
@@ -127,7 +127,7 @@ static const char *advance(struct Instance *instance, const struct Communication
     if (flag >= 0 && obeys_equations(instance, erk, before, time)) break;
     erk->trial = 0.1 * fmin(erk->trial, rest);
     N_VScale(1.0, erk->before, state);
-    if (solver_rests(before, erk->trial))
+    if (solver_step_vanishes(before, erk->trial))
       return "the equations have no solution, or the step size fell below the resolution of time";
     if (!start_method(instance, erk, before, erk->trial, step->end)) return "ERKStep cannot be restarted";
   }
