@@ -262,7 +262,9 @@ struct SwitchTable {
   const struct RestingMetadata *resting; /* NULL if there are none */
   size_t resting_count;
   void (*find_resting)(struct Resolution *resolution); /* rests/resting_velocities.h; NULL without such velocities */
-  /* Branches whose indicators depend only on time, parameters and modes: affine_count that are affine in time, others. */
+  /*
+   * Branches whose indicators depend only on time, parameters and modes: affine_count that are affine in time, others.
+   */
   const size_t *timed;
   size_t timed_count, affine_count;
   const struct TimeLaws *time_laws;     /* time_laws.h; NULL without such branches */

@@ -71,7 +71,7 @@ class Slave:
             self.set(piece[0])
         self.fmu.exitInitializationMode()
         if left:
-            raise Problem(f"{self.description.modelName} accepts no start values of {', '.join(left)}")
+            raise Problem(f"{self.description.modelName} accepts no start values of {', '.join(left)}; expected parameters, inputs or states")
 
     def constant_halves(self, piece, begin, end):
         """Return a list of (begin, end, values) of constant inputs that replace polynomials: one if these are constant, else two."""

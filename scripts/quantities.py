@@ -54,5 +54,5 @@ def assignment(text):
     """Parse NAME=VALUE of a command line; return the name, and the value as text."""
     name, separator, value = text.partition("=")
     if not separator or not name or not value.strip():
-        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE")
+        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=VALUE; expected one such as theta=30deg")
     return name, value

@@ -21,7 +21,7 @@ def variation(text):
             raise ValueError
         return name, (first, last, int(count[0]) if count else None)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,...") from None
+        raise argparse.ArgumentTypeError(f"'{text}' is not a range; expected NAME=FROM:TO:COUNT or NAME=VALUE,VALUE,...") from None
 
 
 def add_sweep_arguments(parser, output):

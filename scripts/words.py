@@ -1,6 +1,6 @@
 """
 Find words, sentences and paragraphs that src/STYLE.md excludes, in pages, in comments of C and Python, and in the last commit's subject.
-Find functions that comments name and no code has. Print each with its place and what to write instead; the status is 1 if there are any.
+Find functions that comments name and no code has, and messages of lagc without a remedy. Print each with its place and what to write instead; the status is 1 if there are any.
 """
 
 import io
@@ -86,6 +86,15 @@ def wrong_names(source):
                 yield number, f"the name '{name}'", instead
 
 
+def messages_without_remedy(source):
+    """Messages of lagc that neither say what to write instead nor get it by a last %s, with their lines."""
+    literal = r'"(?:\\.|[^"\\\n])*"'
+    for match in re.finditer(rf"\b(?:report_error|report_warning|report_at|FAIL)\([^;\"]*?((?:{literal}\s*)+)", source):
+        message = "".join(text[1:-1] for text in re.findall(literal, match[1]))
+        if len(message.split()) > 2 and not re.search(r"; |found %s|does%s|%s$", message):
+            yield source.count("\n", 0, match.start(1)) + 1, f"the message '{message}'", "what to write instead after a semicolon"
+
+
 def paragraphs(page):
     """Of a page's running text: without code, tables, headings and lists."""
     lines, fenced = page.split("\n"), False
@@ -124,6 +133,8 @@ def faults_of(path):
     else:
         for number, comment in comments_of(path):
             yield from ((number, *fault) for fault in wrong_words(comment))
+        if "compiler" in path.parts and path.suffix == ".c":
+            yield from messages_without_remedy(text)
         code = re.sub(r'(?s)""".*?"""', lambda match: "\n" * match[0].count("\n"), text)
         yield from ((number, name, instead) for number, name, instead in wrong_names(code) if "tests" not in path.parts or "held" not in name)
 

@@ -27,7 +27,10 @@ struct VisibleParts {
 /* Axes of the picture: of the plane of x and y, of that of x and z, or none in space. */
 enum Plane { IN_XY, IN_XZ, IN_SPACE };
 
-/* Returns the view: planar systems with x to the right and y or z up; others oblique from above, with gravity downwards. */
+/*
+ * Returns the view: planar systems with x to the right and y or z up; others oblique from above, with gravity
+ * downwards.
+ */
 static struct View view_of(const struct Model *model, enum Plane plane) {
   const double azimuth = -1.1, elevation = 0.35;
   struct View view = {{1, 0, 0}, {0, 1, 0}};

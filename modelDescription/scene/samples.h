@@ -16,7 +16,7 @@ struct SceneObject {
   bool is_planar; /* it is a planar body */
 };
 
-/* Samples of one model. values[0] is the start; indices of objects are those of things. */
+/* Samples of one model. values[0] is the start. Indices of objects refer to objects[]. */
 struct Samples {
   const struct Model *model;
   struct SceneObject *objects; /* the first one is the base */

@@ -1,6 +1,6 @@
 /*
- * Functions for a page beside those of FMI: creates an instance with callbacks, and collects its messages. FMU_SOURCE is the
- * FMU as one C file; without it, the functions are linked in.
+ * Functions for a page beside those of FMI: creates an instance with callbacks, and collects its messages. FMU_SOURCE
+ * is the FMU as one C file; without it, the functions are linked in.
  */
 #ifdef FMU_SOURCE
 #define FMI2_OVERRIDE_FUNCTION_PREFIX

@@ -88,7 +88,7 @@ static fmi2Status initialize(void) {
 }
 
 static fmi2Status step(void) {
-  /* no long ones, which may be valid and take long */
+  /* without long steps, which may be valid and would take long */
   static const double wrong[] = {0.0, -1.0, 1e-300, 1e-16, INFINITY, NAN};
   double size = one_in(20) ? wrong[random_below(sizeof wrong / sizeof *wrong)] : 0.001 * (double)(1 + random_below(20));
   fmi2Status status = fmu.fmi2DoStep(c, one_in(20) ? number() : now, size, fmi2True);

@@ -164,7 +164,10 @@ static void test_linearization(void **state) {
     assert_value(&cart, cases[i].node, at, 5, polynomial(cases[i].of, &point, &deviation, cases[i].order), 1e-8);
 }
 
-/* (5 + 2 x^2) a + 2 cos(theta) alpha = F x - 20 x^3 - 2 x v^2 + 2 sin(theta) omega^2,  2 cos(theta) a + 2 alpha = -18 sin(theta) */
+/*
+ * (5 + 2 x^2) a + 2 cos(theta) alpha = F x - 20 x^3 - 2 x v^2 + 2 sin(theta) omega^2,  2 cos(theta) a + 2 alpha = -18
+ * sin(theta)
+ */
 static void test_equations_of_coupled_coordinates(void **state) {
   (void)state;
   struct Derived cart = derive(CART, NULL);

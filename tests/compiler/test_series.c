@@ -1,4 +1,7 @@
-/* The recurrences of include/series.h and the limits of include/series_limit.h, against series and radii in closed form. */
+/*
+ * The recurrences of include/series.h and the limits of include/series_limit.h, against series and radii in closed
+ * form.
+ */
 #include "expressions.h"
 #include "series.h"
 #include "series_limit.h"

@@ -131,7 +131,7 @@ def drive(draw):
     system.prescribed_velocities.append(v - prescribed.velocity_start - moved)
     system.potentials.append(draw.quantity(0.5, 4) * (q - other) ** 2 / 2)
     body(draw, **{draw.choice("xyz"): q})
-    system.work = False  # would include the drive, which the reference does not
+    system.work = False  # the work would include that of the drive, which the reference omits
 
 
 def displacement(draw):

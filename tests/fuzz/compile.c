@@ -64,7 +64,7 @@ static void compile_file(const char *path) {
 int LLVMFuzzerInitialize(int *count, char ***words) {
   (void)count;
   (void)words;
-  stderr = fopen("/dev/null", "w"); /* the sanitizers write to the descriptor, and are still heard */
+  stderr = fopen("/dev/null", "w"); /* the sanitizers write to the descriptor, so their reports remain */
   return 0;
 }
 

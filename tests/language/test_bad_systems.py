@@ -38,13 +38,13 @@ CASES = [
     ("name with a space", 2, '<parameter name="m 1" start="1"/>', 2, 'name="m 1" of <parameter> is not a name; expected letters'),
     ("unknown solver", 11, '<solver method="euler"/>', 11, 'method="euler" of <solver> is not known; expected taylor, erk'),
     ("negative tolerance", 11, '<solver method="erk" tolerance="-1"/>', 11, 'tolerance="-1" of <solver> is not above 0'),
-    ("tolerance of 5", 11, '<solver method="erk" tolerance="5"/>', 11, "tolerance 5; expected a number between 0 and 1"),
+    ("tolerance of 5", 11, '<solver method="erk" tolerance="5"/>', 11, "tolerance is 5; expected a number between 0 and 1"),
     ("tolerance by a constant", 11, '<constant name="INF" value="-1"/><solver method="erk" tolerance="INF"/>', 11,
-     "tolerance -1; expected"),
-    ("step by a constant", 12, '<constant name="INF" value="0"/><experiment stepSize="INF"/>', 12, "stepSize 0; expected"),
+     "tolerance is -1; expected"),
+    ("step by a constant", 12, '<constant name="INF" value="0"/><experiment stepSize="INF"/>', 12, "stepSize is 0; expected"),
     ("largest step of zero", 11, '<solver method="erk" maxStep="0"/>', 11, 'maxStep="0" of <solver> is not above 0'),
     ("largest step of the exact method", 11, '<solver method="exact" maxStep="0.1"/>', 11, "expected no maxStep"),
-    ("half a step at most", 11, '<solver method="erk" maxSteps="0.5"/>', 11, "maxSteps 0.5; expected a whole number from 1 to 1e9"),
+    ("half a step at most", 11, '<solver method="erk" maxSteps="0.5"/>', 11, "maxSteps is 0.5; expected a whole number from 1 to 1e9"),
     ("number of steps of the exact method", 11, '<solver method="exact" maxSteps="10"/>', 11, "expected no maxSteps"),
     ("step of zero", 12, '<experiment stepSize="0"/>', 12, 'stepSize="0" of <experiment> is not above 0'),
     ("stop before start", 12, '<experiment startTime="5" stopTime="2"/>', 12, "stopTime 2 is not after startTime 5"),
@@ -81,7 +81,7 @@ CASES = [
     ("tangent at its pole", 8, "<potential>tan(pi/2)*m*g*l</potential>", 8, "has no finite value; expected .* poles"),
     ("power of 0", 8, "<potential>0^-1*m*g*l</potential>", 8, r"\(0\)\^\(-1\) has no finite value"),
     ("broken power of a negative number", 8, "<potential>(-8)^(1/3)*m*g*l</potential>", 8, r"\(-8\)\^\(0.333333\) has no finite"),
-    ("varying power of a negative number", 8, "<potential>(-2)^theta*m*g*l</potential>", 8, "power of -2 with an exponent that varies"),
+    ("varying power of a negative number", 8, "<potential>(-2)^theta*m*g*l</potential>", 8, "the base of a power is -2, and its exponent varies"),
     ("product that is too large", 8, "<potential>1e308*10*m*g*l</potential>", 8, "a product of numbers is not finite"),
     ("sum that is too large", 8, "<potential>1e308*m*g*l + 1e308*m*g*l</potential>", 8, "a sum of numbers is not finite"),
     ("sum of terms that is too large", 8, "<potential>m*g*l*sum(i, 1, 3, 1e308)</potential>", 8, "a sum of numbers is not finite"),
@@ -125,7 +125,7 @@ CASES = [
     ("start outside the range", 2, '<parameter name="m" start="-1" min="0"/>', 2, "start -1 is outside min and max"),
     ("start that is not a number", 2, '<parameter name="m" start="one"/>', 2, "unknown name 'one'"),
     ("start that is infinite", 2, '<parameter name="m" start="1/(1-1)"/>', 2, "division by zero|no finite value"),
-    ("force without coordinate", 9, "<force>tau</force>", 9, 'needs either coordinate='),
+    ("force without coordinate", 9, "<force>tau</force>", 9, 'the direction of <force> is not determined; expected coordinate='),
     ("force along nothing", 9, '<force coordinate="phi">tau</force>', 9, "no coordinate 'phi' for this force"),
     ("force on nothing", 9, '<force on="rod" x="1"/>', 9, "no particle, body, point or frame 'rod'"),
     ("particle without position", 7, '<particle name="bob" mass="m"/>', 7, "<particle> has no position; expected x, y or z"),
@@ -139,14 +139,14 @@ CASES = [
     ("two coordinates for one motion", 7,
      '<coordinate name="phi" velocity="nu" unit="rad"/>\n'
      '<particle name="bob" mass="m" x="l*sin(theta + phi)" y="-l*cos(theta + phi)"/>', 0, "mass matrix is singular: the velocity of .* is not independent"),
-    ("force along a coordinate with components", 9, '<force coordinate="theta" x="1">tau</force>', 9, "needs either coordinate="),
-    ("force on a particle without components", 9, '<force on="bob">tau</force>', 9, "needs either coordinate="),
+    ("force along a coordinate with components", 9, '<force coordinate="theta" x="1">tau</force>', 9, "the direction of <force> is not determined; expected coordinate="),
+    ("force on a particle without components", 9, '<force on="bob">tau</force>', 9, "the direction of <force> is not determined; expected coordinate="),
     ("force on a particle with a text", 9, '<force on="bob" x="1">tau</force>', 9, '<force on="bob"> contains text'),
     ("force along what a particle has not", 9, '<force on="bob" z="1"/>', 9, "a force along z on 'bob', which has no z"),
     ("two particles of one name", 7,
      '<particle name="bob" mass="m" x="l*sin(theta)" y="-l*cos(theta)"/>\n<particle name="bob" mass="m" z="l*theta"/>', 8,
      "named 'bob' is already defined on line 7"),
-    ("work without forces", 9, "<work/>", 9, "<work/> without forces"),
+    ("work without forces", 9, "<work/>", 9, "<work/> has no forces"),
     ("series of a function with a kink", 11,
      '<force coordinate="theta">tau*asin(sin(theta))</force><solver method="taylor"/>', 11, "asin of a sine has a kink.*expected the method 'erk'"),
     ("series of another function with a kink", 11,
@@ -194,7 +194,7 @@ CASES = [
     ("less than", 8, "<potential>m*g*max(0, l < 1)</potential>", 8, "'<' begins an element .*write &lt;"),
     ("less than in an attribute", 7, '<particle name="bob" mass="m" x="l<2"/>', 7, "'<' stands in an attribute, .*; write &lt;"),
     ("condition", 8, "<potential>m*g*l*(theta &lt; 1)</potential>", 8, r"write if\(x > 0"),
-    ("choice", 8, "<potential>if(theta,1,2)*m*g*l</potential>", 8, "a condition that is not a comparison; expected one such as x > 0"),
+    ("choice", 8, "<potential>if(theta,1,2)*m*g*l</potential>", 8, "a condition is not a comparison; expected one such as x > 0"),
     ("comma in a number", 4, '<parameter name="g" start="9,81" unit="m/s2"/>', 4, "write a point in numbers, as in 9.81"),
     ("power of other languages", 8, "<potential>m*g*l*theta**2</potential>", 8, r"write one \* for a product and \^ for a power"),
     ("function call of a variable", 8, "<potential>m*g*l(1 - cos(theta))</potential>", 8, r"'l' is not a function; write \* for a product"),
@@ -206,7 +206,7 @@ CASES = [
     ("derivative of an input in a constraint of velocities", 8, '<input name="u" unit="rad" derivatives="1"/><constraint name="c" unit="rad/s">omega - der(u)</constraint>', 8,
      "the constraint 'c' needs the time derivative of 'der\\(u\\)'; expected derivatives=\"2\" of the <input> 'u'"),
     ("logarithm of other languages", 8, "<potential>m*g*l*ln(2)</potential>", 8, "unknown function 'ln'; write log for the natural"),
-    ("millimetres", 3, '<parameter name="l" start="1" unit="mm"/>', 3, "'mm' is not known: expected m, and the value times 1e-3"),
+    ("millimetres", 3, '<parameter name="l" start="1" unit="mm"/>', 3, "'mm' is not known; expected m, and the value times 1e-3"),
     ("degrees", 6, '<coordinate name="theta" velocity="omega" unit="deg"/>', 6, "expected rad, and the value times pi/180"),
     ("unit in a number", 2, '<parameter name="m" start="0.5 kg"/>', 2, 'units in unit="..."'),
     ("input in a position", 7, '<particle name="bob" mass="m" y="l*cos(theta) + tau"/>', 7, "cannot depend on inputs, but 'tau' does; use it in a <force>"),
@@ -221,7 +221,7 @@ CASES = [
     ("attribute in upper case", 2, '<parameter Name="m" start="1"/>', 2, "no attribute 'Name'; did you mean 'name'"),
     ("attribute of a body at a particle", 7, '<particle name="bob" mass="m" y="l*cos(theta)" inertia="m*l^2"/>', 7,
      "<particle> has no attribute 'inertia'; expected name, in, mass, x, y or z"),
-    ("body without its angle", 7, '<body name="bob" mass="m" y="l*cos(theta)" inertia="m*l^2"/>', 7, "<body> needs either angle and inertia, of a planar body, or in="),
+    ("body without its angle", 7, '<body name="bob" mass="m" y="l*cos(theta)" inertia="m*l^2"/>', 7, "the rotation of <body> is not determined; expected angle and inertia, or in="),
     ("attribute of an energy", 8, '<potential name="U">m*g*bob.y</potential>', 8, "<potential> has no attribute 'name'; expected none"),
     ("element in upper case", 2, '<Parameter name="m" start="1"/>', 2, "<Parameter> is not an element of <system>; did you mean 'parameter'"),
     ("element of another language", 8, "<lagrangian>-m*g*bob.y</lagrangian>", 8, "<lagrangian> is not an element of <system>; write .*<kinetic> and <potential>"),
@@ -284,7 +284,7 @@ CASES = [
      r"the name 'k' is already defined on line 11; .* or an index such as \[i\]"),
     ("exponent of other languages", 4, '<parameter name="g" start="9.81" unit="m/s^2"/>', 4, "expected exponents as plain digits, as in m2"),
     ("product of units", 5, '<input name="tau" unit="N*m"/>', 5, r"expected a point between units, as in N\.m"),
-    ("unit in words", 2, '<parameter name="m" start="1" unit="kilogram"/>', 2, "'kilogram' is not known: expected kg$"),
+    ("unit in words", 2, '<parameter name="m" start="1" unit="kilogram"/>', 2, "'kilogram' is not known; expected kg$"),
     ("unit that is empty", 2, '<parameter name="m" start="1" unit=""/>', 2, "expected 1 for a pure number, or no unit"),
     ("unit in brackets", 2, '<parameter name="m" start="1" unit="[kg]"/>', 2, "expected it without brackets"),
     ("negative kinetic energy", 7, '<define name="y">-l*cos(theta)</define><kinetic>-m*l^2*omega^2/2</kinetic><particle name="bob" mass="0" y="y"/>', 6,
@@ -327,13 +327,13 @@ def test_broken_system(what, line, text, expected_line, message, tmp_path):
 
 # Likely mistakes: lagc writes the FMU's sources and a warning.
 WARNINGS = [
-    ("root of a negative start", 8, "<potential>m*g*l*sqrt(theta - 2)</potential>", 8, "root or fractional power of -1"),
-    ("fractional power", 8, "<potential>m*g*l*(\ntheta - 2)^1.5</potential>", 9, "root or fractional power of -1"),
-    ("logarithm", 8, "<potential>m*g*l*log(theta - 1)</potential>", 8, r"log\(0\) at the start values; expected .* positive"),
-    ("arc sine", 8, "<potential>m*g*l*asin(2*theta)</potential>", 8, r"asin\(2\) at the start values; expected .* -1 to 1"),
-    ("arc cosine", 10, '<output name="a">acos(-1.5*theta)</output>', 10, r"acos\(-1.5\) at the start values"),
-    ("area cosine", 8, "<potential>m*g*l*acosh(theta/2)</potential>", 8, r"acosh\(0.5\) at the start values"),
-    ("area tangent", 8, "<potential>m*g*l*atanh(theta)</potential>", 8, r"atanh\(1\) at the start values"),
+    ("root of a negative start", 8, "<potential>m*g*l*sqrt(theta - 2)</potential>", 8, "the base of a root or fractional power is -1"),
+    ("fractional power", 8, "<potential>m*g*l*(\ntheta - 2)^1.5</potential>", 9, "the base of a root or fractional power is -1"),
+    ("logarithm", 8, "<potential>m*g*l*log(theta - 1)</potential>", 8, r"log\(0\) has no finite value at the start values; expected .* positive"),
+    ("arc sine", 8, "<potential>m*g*l*asin(2*theta)</potential>", 8, r"asin\(2\) has no finite value at the start values; expected .* -1 to 1"),
+    ("arc cosine", 10, '<output name="a">acos(-1.5*theta)</output>', 10, r"acos\(-1.5\) has no finite value at the start values"),
+    ("area cosine", 8, "<potential>m*g*l*acosh(theta/2)</potential>", 8, r"acosh\(0.5\) has no finite value at the start values"),
+    ("area tangent", 8, "<potential>m*g*l*atanh(theta)</potential>", 8, r"atanh\(1\) has no finite value at the start values"),
     ("mass of 0", 2, '<parameter name="m" start="0" unit="kg"/>', 7, "the mass of 'bob' is 0 at the start values"),
     ("inertia below 0", 7, '<body name="bob" mass="m" inertia="-m*l^2/2" x="l*theta" angle="theta"/>', 7, "the inertia of 'bob' is -0.5 at the start values"),
     ("unit forgotten", 3, '<parameter name="l" start="1"/>', 3, "'l' has no unit, so that units are not checked where it is used"),
@@ -490,7 +490,7 @@ COHERENT = "coherent SI units such as kg, m, s, rad, N, J, W, Hz, joined by '.' 
 def test_values_in_other_units(unit, remedy, tmp_path):
     """The message names the factor to SI units; the expected factors are computed by hand."""
     result = compile_text(broken(2, f'<parameter name="m" start="1" unit="{unit}"/>'), tmp_path)
-    assert result.stderr == f"system.xml:2: the unit '{unit}' is not known: expected {remedy}\n"
+    assert result.stderr == f"system.xml:2: the unit '{unit}' is not known; expected {remedy}\n"
 
 
 def test_too_many_nested_loops(tmp_path):
@@ -534,7 +534,7 @@ def test_old_output_goes_when_the_system_breaks(tmp_path):
         (["system.xml", "-o", "out", "-D", "N=3"], "no <constant> of this name"),
         (["--linearize", "system.xml", "--at", "alpha=1"], "'alpha'"),
         (["--linearize", "system.xml", "--at", "m=1"], "'m'; expected a coordinate, a velocity, a state or an input"),
-        (["--linearize", "system.xml", "--at", "theta"], "expected name=value"),
+        (["--linearize", "system.xml", "--at", "theta"], "--at theta names no value; expected NAME=VALUE"),
         (["--linearize", "system.xml", "--at", "theta=30kg"], "--at theta: '30kg' is in kg; expected a value in rad"),
         (["--linearize", "system.xml", "--at", "theta=3furlong"], "--at theta: the unit 'furlong' of '3furlong' is not known; expected a value in rad"),
         (["system.xml"], "usage"),
@@ -578,7 +578,7 @@ LINEARIZATION = '<linearization of="{}" name="Line">\n  <at name="theta" value="
     "of, line, expected",
     [
         ("missing.xml", "", r"missing.xml.*expected an XML file"),
-        ("line.xml", "", "line.xml:1: a linearization of a linearization"),
+        ("line.xml", "", "line.xml:1: the file linearizes another linearization"),
         ("system.xml", '<at name="theta" value="1"/>\n', "line.xml:3: the operating point sets 'theta' twice"),
         ("system.xml", '<at name="alpha" value="1"/>\n', "line.xml:3: the operating point sets 'alpha'; expected a coordinate"),
         ("system.xml", '<at name="omgea" value="1"/>\n', "line.xml:3: the operating point sets 'omgea', which does not exist; did you mean 'omega'"),
@@ -605,12 +605,12 @@ def test_long_and_deep_expressions(tmp_path):
     for nesting in (1001, 100000):
         expression = "(" * nesting + "m*g*bob.y" + ")" * nesting
         result = compile_text(broken(8, f"<potential>{expression}</potential>"), tmp_path)
-        assert result.returncode == 1 and "more than 1000 nested parentheses" in result.stderr
+        assert result.returncode == 1 and "parentheses or powers are nested more than 1000 deep" in result.stderr
     result = compile_text(broken(8, f"<potential>{'-' * 200000}m*g*l</potential>"), tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     for text in ("m*g*l" + "^2" * 5000, "cos(" * 5000 + "1" + ")" * 5000):
         result = compile_text(broken(8, f"<potential>{text}</potential>"), tmp_path)
-        assert result.returncode == 1 and "system.xml:8: the potential: more than 1000 nested parentheses" in result.stderr
+        assert result.returncode == 1 and "system.xml:8: the potential: parentheses or powers are nested more than 1000 deep" in result.stderr
 
 
 def test_external_entities_are_not_read(tmp_path):

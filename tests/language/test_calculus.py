@@ -193,7 +193,7 @@ def test_a_kink_is_named_with_its_error(tmp_path):
     ("diff(x 2, x)", "expected ',' after the expression of diff(expression, name)"),
     ("integral(x, 0, 1, x)", "the variable 'x' of integral(...) is already a name"),
     ("integral(s, 0, 1)", "expected ',' after the end of integral(name, from, to, expression)"),
-    ("integral(s, 0, 1, s, 0)", "integral(...) by 0 nodes; expected 1 to 200"),
+    ("integral(s, 0, 1, s, 0)", "integral(...) has 0 nodes; expected 1 to 200"),
     ("integral(s, 0, 1, s, p)", "cannot depend on parameters"),
     ("integral(s, 0, 1, s) + s", "unknown name 's'"),
     ("integral(s, 0, 1, log(-1 - s^2))", "integral(s, 0, 1, log(-1 - s^2)) has no finite value"),

@@ -181,7 +181,7 @@ def test_a_range_of_a_parameter_calculated_by_an_inner_include(tmp_path):
         "part.xml": '<system name="P"><parameter name="a" start="1"/></system>',
     }
     result = compile_all(tmp_path, texts)
-    assert result.returncode == 1 and "system.xml:3: a <parameter> with a value and a max; expected value" in result.stderr, result.stderr
+    assert result.returncode == 1 and "system.xml:3: a <parameter> has a value and a max; expected value" in result.stderr, result.stderr
 
 
 def test_a_changed_part_is_rebuilt(tmp_path):
@@ -224,7 +224,7 @@ def test_mistakes_in_a_part(inside, message, tmp_path):
     ('<parameter name="Q" start="1"/>', "system.xml:3: 'parts/part.xml' has no <parameter> 'Q'; expected one of its names"),
     ('<parameter name="masss" start="1"/>', "system.xml:3: 'parts/part.xml' has no <parameter> 'masss'; did you mean 'mass'?"),
     ('<parameter name="F" start="1"/>', "system.xml:3: 'F' is not a <parameter> of 'parts/part.xml'; expected <input name=...>"),
-    ('<parameter name="mass" value="1" start="2"/>', "a <parameter> with a value and a start"),
+    ('<parameter name="mass" value="1" start="2"/>', "a <parameter> has a value and a start"),
     ('<parameter name="mass" value="lost"/>', "system.xml:3: value of <parameter>: unknown name 'lost'"),
     ('<parameter name="mass" value="part.x"/>', "system.xml:3: value of <parameter> cannot depend on coordinates, but 'part.x' does"),
     ('<parameter name="mass" start="2"/><parameter name="mass" start="2"/>', "'mass' is given twice; expected once"),

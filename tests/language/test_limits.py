@@ -28,9 +28,9 @@ def loops(*bounds, content="<potential>x</potential>"):
 
 STEPS = "the system is too large: more than 100000000 steps to read and derive it"
 REJECTED = {
-    "an index beyond whole numbers": (loops(("1e17", "1e17")), "system.xml:4: <for> from .* expected whole numbers below 1e9"),
-    "an index that cannot be counted on": (loops(("1e16", "1e16+1")), "system.xml:4: <for> from .* expected whole numbers below 1e9"),
-    "an index far below 0": (loops(("-1e9", "-1e9")), "system.xml:4: <for> from .* expected whole numbers below 1e9"),
+    "an index beyond whole numbers": (loops(("1e17", "1e17")), "system.xml:4: <for> runs from .* expected whole numbers below 1e9"),
+    "an index that cannot be counted on": (loops(("1e16", "1e16+1")), "system.xml:4: <for> runs from .* expected whole numbers below 1e9"),
+    "an index far below 0": (loops(("-1e9", "-1e9")), "system.xml:4: <for> runs from .* expected whole numbers below 1e9"),
     "nested loops": (loops(("1", "10000"), ("1", "10000"), ("1", "10000")), STEPS),
     "nested loops of nothing": (loops(("1", "10000"), ("1", "10000"), ("1", "10000"), content=""), STEPS),
     "long sums in a loop": (loops(("1", "10000"), content="<potential>sum(j, 1, 100000, x)</potential>"), STEPS),

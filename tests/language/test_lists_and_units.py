@@ -55,7 +55,7 @@ def test_units_with_roots(tmp_path):
 ])  # fmt: skip
 def test_units_that_are_not_si(tmp_path, unit, remedy):
     result = compiled(tmp_path, f'<system name="X"><parameter name="p" start="1" unit="{unit}"/><output name="o">p</output></system>')
-    assert f"system.xml:1: the unit '{unit}' is not known: expected {remedy}" in result.stderr
+    assert f"system.xml:1: the unit '{unit}' is not known; expected {remedy}" in result.stderr
 
 
 @pytest.mark.parametrize("constant, message", [

@@ -81,4 +81,4 @@ def test_messages(inside, message, tmp_path):
 
 def test_two_of_one_name(tmp_path):
     result = derived(tmp_path, 2 * '  <preset name="p"><at name="x" value="1"/></preset>\n')
-    assert result.returncode == 1 and "system.xml:16: a second preset 'p'; expected another name" in result.stderr
+    assert result.returncode == 1 and "system.xml:16: the preset 'p' is defined already; expected another name" in result.stderr

@@ -68,4 +68,4 @@ def test_messages(task, message, tmp_path):
 
 def test_two_of_one_name(tmp_path):
     result = derived(tmp_path, 2 * '  <task name="t"><goal min="1">x</goal></task>\n')
-    assert result.returncode == 1 and "system.xml:10: a second task 't'; expected another name" in result.stderr
+    assert result.returncode == 1 and "system.xml:10: the task 't' is defined already; expected another name" in result.stderr

@@ -9,7 +9,7 @@ from scipy.integrate import solve_ivp
 import fmu
 import reactions_in_sympy
 from fmu import lagc
-from held_systems import CRANE, METHODS, ROBOT, rename
+from constrained_systems import CRANE, METHODS, ROBOT, rename
 
 
 @pytest.fixture(scope="module")

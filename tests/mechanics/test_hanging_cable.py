@@ -118,7 +118,7 @@ def test_swings_of_a_hanging_cable(lagrange_fmu):  # noqa: F811
     np.testing.assert_allclose(frequencies(found)[:5], jn_zeros(0, 5) / 2 * np.sqrt(p["g"] / p["L"]), rtol=2e-5)
 
 
-@pytest.mark.filterwarnings("ignore:the operating point is not an equilibrium")  # it rests but for rounding, times EA
+@pytest.mark.filterwarnings("ignore:the operating point is not an equilibrium")  # its rates are rounding errors times EA
 def test_vibrations_of_a_beam(lagrange_fmu):  # noqa: F811
     """Without weight it is a beam on a pin: tan(z) = tanh(z), and the frequency z^2 sqrt(EI/(rhoA L^4)) (Euler and Bernoulli)."""
     p = START | dict(g=0.0, EI=1.0, EA=1e6, b=0.0, tilt=0.0)

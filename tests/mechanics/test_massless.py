@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 import fmu
 from fmu import lagc
-from held_systems import METHODS
+from constrained_systems import METHODS
 
 CRANK = """
 <system name="{name}" description="slider crank with a connecting rod that has no mass">

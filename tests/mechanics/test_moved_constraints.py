@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 import fmu
 from fmu import DISCARD, WARNING
-from held_systems import METHODS, move, rename
+from constrained_systems import METHODS, move, rename
 
 HAND = """
 <system name="Hand">

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fmu
-from held_systems import HOIST, METHODS, SEAT, TABLE, check_balance, rename
+from constrained_systems import HOIST, METHODS, SEAT, TABLE, check_balance, rename
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from fmpy.validation import validate_fmu
 import fmu
 import reactions_in_sympy
 from fmu import lagc
-from held_systems import ARM, BEARING, CHAIN, CRANE, HOIST, ROBOT, SEAT, TABLE, WIRE, at, random_values, rename
+from constrained_systems import ARM, BEARING, CHAIN, CRANE, HOIST, ROBOT, SEAT, TABLE, WIRE, at, random_values, rename
 from mechanics import time
 from typeset import check, shown
 

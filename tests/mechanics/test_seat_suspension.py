@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from held_systems import check_balance
+from constrained_systems import check_balance
 
 START = dict(zs=0.0, ms=18.0, md=70.0, ks=7000.0, cs=400.0, kd=50000.0, cd=1000.0)
 

@@ -41,7 +41,7 @@ def test_values(text, unit, number):
     ("3furlong", "m", "x: the unit 'furlong' of '3furlong' is not known; expected a value in m"),
     ("3m", "furlong", "x: '3m' is in m; expected a value in furlong"),
     ("half", "m", "x: the value: unknown name 'half'; expected a number, perhaps with its unit, such as 0.5, pi/2 or 30deg"),
-    ("1/0", "m", "x: the value: division by zero"),
+    ("1/0", "m", "x: the value: a division by zero has no value"),
     ("2 3", "m", "x: the value: "),
     ("", "m", "x: the value: expected a number"),
     ("nan", "m", "x: 'nan' is not finite; expected a finite number in m"),

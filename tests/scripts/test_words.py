@@ -39,6 +39,17 @@ def test_names():
     assert [number for number, _, _ in words.wrong_names(source)] == [1, 4, 5]
 
 
+@pytest.mark.parametrize("call, lines", [
+    ('report_at(reader, node, "a <stop> has no limit; expected one");', []),
+    ('report_at(reader, node,\n          "a <stop> has "\n          "no limit");', [2]),
+    ('FAIL(parser, "%s: expected \'%c\', found %s%s", what, c, text, hint);', []),
+    ('report_error(diagnostics, 0, "unknown name%s", hint);', []),
+    ('copy_text("a sentence");', []),
+])  # fmt: skip
+def test_messages(call, lines):
+    assert [number for number, _, _ in words.messages_without_remedy(call)] == lines
+
+
 def test_functions_that_are_gone(tmp_path):
     """A comment may name a function of any file; a name that no code has is found with its line."""
     (tmp_path / "a.c").write_text("/* Calls first() and\n * second(). */\nint first(void);\n// see third(), gone()\n")

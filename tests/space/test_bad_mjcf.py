@@ -30,13 +30,13 @@ UNKNOWN = "is not read, and would change the motion; expected"
 # Kind of mistake, the replaced line, its new text, the expected line and message.
 CASES = [
     ("unit of angles", 2, '<compiler angle="grad"/>', 2, 'angle="grad" of <compiler> is not known; expected one of degree, radian'),
-    ("global coordinates", 2, '<compiler coordinate="global"/>', 2, 'coordinate="global" of <compiler>; expected local'),
-    ("sequence of angles", 2, '<compiler eulerseq="xyw"/>', 2, 'eulerseq="xyw" of <compiler>; expected three of the letters'),
+    ("global coordinates", 2, '<compiler coordinate="global"/>', 2, 'coordinate="global" of <compiler> is not read; expected local'),
+    ("sequence of angles", 2, '<compiler eulerseq="xyw"/>', 2, 'eulerseq="xyw" of <compiler> is not valid; expected three of the letters'),
     ("mass of all", 2, '<compiler settotalmass="3"/>', 2, f'settotalmass="3" of <compiler> {UNKNOWN} a file without it'),
     ("class twice", 3, '<default><default class="a"/><default class="a"/></default>', 3, "the class 'a' is already defined on line 3"),
     ("class without name", 3, '<default><default/><default class="a"/></default>', 3, "a <default> in a <default> has no class"),
     ("class inside itself", 3, '<default><default class="a"><default class="a"/></default></default>', 3, "the class 'a' is already defined on line 3"),
-    ("gravity", 4, '<option gravity="0 0 nan"/>', 4, 'gravity="0 0 nan" of <option>; expected 3 numbers'),
+    ("gravity", 4, '<option gravity="0 0 nan"/>', 4, 'gravity="0 0 nan" of <option> is not valid; expected 3 numbers'),
     ("air", 4, '<option density="1.2"/>', 4, f'density="1.2" of <option> {UNKNOWN}'),
     ("no damping", 4, '<option><flag passive="disable"/></option>', 4, 'passive="disable" of <flag> is not read'),
     ("floats", 6, '<body name="upper" gravcomp="1">', 6, f'gravcomp="1" of <body> {UNKNOWN}'),
@@ -44,7 +44,7 @@ CASES = [
     ("quaternion 0", 9, '<body name="lower" quat="0 0 0 0">', 9, 'quat="0 0 0 0" of <body> gives no direction'),
     ("parallel axes", 9, '<body name="lower" xyaxes="1 0 0 2 0 0">', 9, 'xyaxes="1 0 0 2 0 0" of <body> gives no direction'),
     ("two angles", 9, '<body name="lower" quat="1 0 0 0" euler="1 0 0">', 9, "<body> has quat and euler; expected one of them"),
-    ("position", 9, '<body name="lower" pos="0 1">', 9, 'pos="0 1" of <body>; expected 3 numbers'),
+    ("position", 9, '<body name="lower" pos="0 1">', 9, 'pos="0 1" of <body> is not valid; expected 3 numbers'),
     ("two bodies of one name", 9, '<body name="upper">', 9, "the link 'upper' is already defined on line 6"),
     ("type of joint", 10, '<joint name="elbow" type="revolute"/>', 10, 'type="revolute" of <joint> is not known; expected one of hinge, slide, ball, free'),
     ("axis", 10, '<joint name="elbow" axis="0 0 0"/>', 10, "the axis of the joint 'elbow' has the length 0"),
@@ -94,7 +94,7 @@ CASES = [
     ("weld without rotation", 15, '<equality><weld body1="lower" torquescale="0"/></equality>', 15, 'torquescale="0" of <weld> constrains no rotation; expected a <connect>'),
     ("no anchor", 15, '<equality><connect body1="lower"/></equality>', 15, "<connect> needs the attribute 'anchor'"),
     ("one site", 15, '<equality><connect site1="lower"/></equality>', 15, "<connect> needs the attribute 'site2'"),
-    ("pose", 15, '<equality><weld body1="lower" relpose="1 2 3"/></equality>', 15, 'relpose="1 2 3" of <weld>; expected 7 numbers'),
+    ("pose", 15, '<equality><weld body1="lower" relpose="1 2 3"/></equality>', 15, 'relpose="1 2 3" of <weld> is not valid; expected 7 numbers'),
     ("flex", 15, '<equality><flex name="a"/></equality>', 15, f"<flex> {UNKNOWN} rigid bodies"),
     ("distance", 15, '<equality><distance geom1="a"/></equality>', 15, f"<distance> {UNKNOWN} a <joint>, <tendon>, <connect> or <weld>"),
     ("tendon as long as itself", 15, '<tendon><fixed name="t"><joint joint="elbow" coef="1"/></fixed></tendon><equality><tendon tendon1="t" tendon2="t"/></equality>', 15, "the tendon 't' is its own tendon2"),
@@ -151,9 +151,9 @@ def test_mistakes_in_included_files(tmp_path):
 KEYS = '<keyframe><key name="home" qpos="0.1 0.2"/><key name="short" qpos="1"/><key name="odd" qvel="0 x"/><key name="free" ctrl="1 2"/></keyframe>'
 BAD_KEYS = [
     ("hom", 1, "there is no <key> 'hom'; did you mean 'home'?"),
-    ("short", 16, 'qpos="1" of <key>; expected 2 numbers'),
-    ("odd", 16, 'qvel="0 x" of <key>; expected 2 numbers'),
-    ("free", 16, 'ctrl="1 2" of <key>; expected 1 number'),
+    ("short", 16, 'qpos="1" of <key> is not valid; expected 2 numbers'),
+    ("odd", 16, 'qvel="0 x" of <key> is not valid; expected 2 numbers'),
+    ("free", 16, 'ctrl="1 2" of <key> is not valid; expected 1 number'),
 ]
 
 

@@ -111,9 +111,9 @@ def test_contacts_that_exist_in_mujoco_alone(ground, replaced, new, lines, tmp_p
 @pytest.mark.parametrize(
     "geom, message",
     [
-        ('condim="2"', 'condim="2" of <geom>; expected 1, 3, 4 or 6'),
+        ('condim="2"', 'condim="2" of <geom> is not valid; expected 1, 3, 4 or 6'),
         ('friction="-1"', 'friction="-1" of <geom> is negative; expected 0 or more'),
-        ('friction="1 2 3 4"', 'friction="1 2 3 4" of <geom>; expected 1 to 3 numbers'),
+        ('friction="1 2 3 4"', 'friction="1 2 3 4" of <geom> is not valid; expected 1 to 3 numbers'),
     ],
 )
 def test_bad_contacts(geom, message, tmp_path):

@@ -165,7 +165,7 @@ def test_planes_of_mjcf_that_touch_nothing(tmp_path, scene, body, expected):
     (tmp_path / "eggs.xml").write_text(scene)
     (tmp_path / "system.xml").write_text(STANDING)
     found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
-    assert found.returncode == 0 and f"a <geom> of type plane of the body '{body}' touches nothing: expected {expected}" in found.stderr
+    assert found.returncode == 0 and f"a <geom> of type plane of the body '{body}' touches nothing; expected {expected}" in found.stderr
 
 
 @pytest.mark.parametrize(

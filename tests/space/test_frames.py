@@ -323,7 +323,7 @@ MESSAGES = [
     ('<particle name="base" in="base" mass="1" x="p*q"/>', "the name 'base' belongs to the frame at rest"),
     ('<body name="base" mass="1" x="p*q" inertia="p*q" angle="q"/>', "the name 'base' belongs to the frame at rest"),
     ('<frame name="f"/><point name="f"/>', "a frame, point or body named 'f' is already defined"),
-    ('<frame name="f"><rotate axis="z"/></frame>', '<rotate> needs either axis="..." with angle="..." or quaternion="..."'),
+    ('<frame name="f"><rotate axis="z"/></frame>', 'the rotation of <rotate> is not determined; expected axis="..." angle="...", or quaternion="..."'),
     ('<frame name="f"><rotate axis="0 1" angle="q"/></frame>', "axis of <rotate> has 2 parts; expected 3 expressions between blanks"),
     ('<frame name="f"><rotate axis="0 0 0" angle="q"/></frame>', "the axis of <rotate> has the length 0; expected a direction"),
     ('<frame name="f"><rotate axis="q 0 1" angle="q"/></frame>', "axis of <rotate> cannot depend on coordinates"),
@@ -332,7 +332,7 @@ MESSAGES = [
     ('<frame name="f"><translate x="q"/></frame>', "unit mismatch: x has the unit rad, expected m"),
     ('<frame name="f"><rotate axis="x" angle="p"/></frame>', "unit mismatch: the angle has the unit m, expected rad"),
     ('<body name="b" mass="1" in="base" x="p*q" angle="q" inertia="1"/>', "a <body> in a frame rotates with it; expected Ixx"),
-    ('<body name="b" mass="1" x="p*q"/>', "<body> needs either angle and inertia, of a planar body, or in="),
+    ('<body name="b" mass="1" x="p*q"/>', "the rotation of <body> is not determined; expected angle and inertia, or in="),
     ('<body name="b" mass="1" in="f" Ixx="q"/><frame name="f"/>', "Ixx of <body> cannot depend on coordinates"),
     ('<particle name="b" mass="1" x="p*q"/><torque on="b" z="1"/>', "there is no frame or body 'b' for this torque"),
     ('<particle name="b" mass="1" in="base" x="p*q"/><torque on="b" z="1"/>', "there is no frame or body 'b' for this torque"),
@@ -343,7 +343,7 @@ MESSAGES = [
     ('<point name="t" x="p"/><output name="o">t.omegaX</output>', "unknown name 't.omegaX'; expected t.x or t.y"),
     ('<gravity z="-9.81*q"/>', "z of <gravity> cannot depend on coordinates"),
     ('<gravity z="p"/>', "unit mismatch: z has the unit m, expected m/s2"),
-    ('<force coordinate="q" in="base">1</force>', "<force> needs either coordinate="),
+    ('<force coordinate="q" in="base">1</force>', "the direction of <force> is not determined; expected coordinate="),
 ]
 
 

@@ -238,8 +238,8 @@ def test_files_of_other_programs(tmp_path):
     [
         ('type="mesh" file="none.stl"', "the mesh 'none.stl' cannot be read: No such file or directory; expected an STL or OBJ file"),
         ('type="mesh"', "the mesh 's' has no file"),
-        ('type="mesh" file="a.stl" scale="0"', 'scale="0" of <shape>; expected a number other than 0, or three'),
-        ('type="mesh" file="a.stl" scale="1 2"', 'scale="1 2" of <shape>; expected a number other than 0, or three'),
+        ('type="mesh" file="a.stl" scale="0"', 'scale="0" of <shape> is not valid; expected a number other than 0, or three'),
+        ('type="mesh" file="a.stl" scale="1 2"', 'scale="1 2" of <shape> is not valid; expected a number other than 0, or three'),
         ('type="mesh" file="a.stl" scale="1e-12"', "no further than 1e-9 m; expected another scale"),
         ('type="mesh" file="a.stl" radius="1"', "the shape 's' is a mesh, which has no radius"),
         ('type="sphere" radius="1" file="a.stl"', "the shape 's' is a sphere, which has no file"),

@@ -452,7 +452,7 @@ def test_column_of_five(column_of_five):
         ('name="q" stiction="1"', "a <contact> has stiction without friction; expected friction"),
         ('name="q" friction="mu" stiffness="1e5" stiction="1"', "a <contact> has both stiffness and stiction; expected creep"),
         ('name="q" friction="mu" creep="1e-3"', "a <contact> between shapes has creep without stiffness"),
-        ('friction="mu"', "a rigid <contact> without a name"),
+        ('friction="mu"', "a rigid <contact> has no name"),
     ],
 )
 def test_messages(tmp_path, attributes, message):

@@ -205,7 +205,7 @@ def test_a_shape_without_size(tmp_path):
     (tmp_path / "roller.urdf").write_text(re.sub("<geometry>.*</geometry>", '<geometry><sphere radius="0"/></geometry>', ROUND.format(INERTIA.format(0.1))))
     (tmp_path / "system.xml").write_text(ROLLER)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
-    assert result.returncode == 1 and 'radius="0" of <sphere>; expected a number above 0' in result.stderr
+    assert result.returncode == 1 and 'radius="0" of <sphere> is not valid; expected a number above 0' in result.stderr
     (tmp_path / "system.xml").write_text(ROLLER.replace(' ground="true"', ""))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0 and "left out, since the motion does not depend on them: collision" in result.stderr

@@ -303,7 +303,7 @@ def test_pressing_where_time_alone_moves_along_the_normal(open_fmu):
         ('<contact between="floor" and="floor2" stiffness="k"/>', "there is no <contact> between such shapes as 'floor' and 'floor2'"),
         ('<shape name="s" type="sphere"/>', "the sphere 's' has no radius"),
         ('<shape name="s" type="sphere" radius="r" sizeX="r"/>', "is a sphere, which has no sizeX"),
-        ('<contact between="skin" and="skin" stiffness="k"/>', "a <contact> of 'skin' with itself"),
+        ('<contact between="skin" and="skin" stiffness="k"/>', "a <contact> is between 'skin' and itself"),
         ('<contact between="skin" and="floor" stiffness="k" friction="mu" creep="0"/>', "the creep of a <contact> is 0"),
         ('<shape name="s" type="sphere" radius="r" axis="x"/>', "is a sphere, which takes no axis"),
         ('<shape name="s" type="sphere" radius="-2*r"/>', "the radius of the sphere 's' is -0.2 at the start values; expected a number above 0"),
@@ -314,7 +314,7 @@ def test_pressing_where_time_alone_moves_along_the_normal(open_fmu):
         ('<shape name="s" type="box" sizeX="1" sizeY="-r"/>', "the sizeY of the box 's' is -0.1 at the start values; expected none below 0"),
         ('<shape name="s" type="box" sizeX="0"/>', "the diagonal of the box 's' is 0 at the start values; expected a number above 0"),
         ('<shape name="s" in="bal" type="sphere" radius="r"/>', "there is nothing named 'bal' for this <shape>"),
-        ('<contact gap="z"/>', "a <contact> needs a name and a gap, or shapes"),
+        ('<contact gap="z"/>', "a <contact> has neither a name with a gap nor two shapes"),
 
         ('<shape name="t" type="sphere" radius="r"/><contact between="t" and="floor" stiffness="k"/>', "nothing moves 't' against 'floor'"),
         ('<shape name="wall" type="plane" axis="y"/><contact name="q" between="skin" and="wall" friction="mu"/>', "no coordinate moves 'skin' towards 'wall' or away from it, so that the force between them is not determined; expected such a coordinate, or stiffness"),

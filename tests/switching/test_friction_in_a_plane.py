@@ -543,7 +543,7 @@ REJECTED = {
     '<friction name="f" velocity="vx" across="2*W" force="1"/>': "the velocity across of a <friction> depends on no velocity",
     '<friction name="f" velocity="vx" across="vy" force="1*N*x/l"/>': None,
     '<friction name="f" velocity="vx" across="vy*vy/W" force="1*N"/>': "the constraint 'f.across' is not linear in the velocities",
-    '<friction name="f" across="vy" force="1*N"/>': "needs either coordinate, or velocity",
+    '<friction name="f" across="vy" force="1*N"/>': "has neither coordinate nor velocity",
 }
 
 

@@ -69,7 +69,7 @@ def test_an_encoder(open_fmu):
 
 
 def test_inputs_that_jump_and_rest(open_fmu):
-    """The piece of an input is right at once, for integers too, and for large values."""
+    """A rounded input has its value as soon as the input is set, also at integers and for large values."""
     instance = open_fmu("Encoder").initialize()
     for value in [0.3, 2.0, 2.7, -1.0, -0.2, 1e6 + 0.5, 3.0, -4.5]:
         instance.set(u=value)

@@ -327,7 +327,7 @@ def test_periods_that_are_none(period):
 
 
 @pytest.mark.parametrize("text, message", [
-    ('<sample every="0.1"/>', "a <sample> that changes nothing; expected a <set>"),
+    ('<sample every="0.1"/>', "a <sample> changes nothing; expected a <set> in it"),
     ('<sample every="-0.1"><set mode="m">1</set></sample>', "every of <sample> is -0.1 at the start values; expected a number above 0"),
     ('<sample every="x"><set mode="m">1</set></sample>', "every of <sample> cannot depend on coordinates, but 'x' does"),
     ('<sample every="l"><set mode="m">1</set></sample>', "unit mismatch: every has the unit m, expected s"),

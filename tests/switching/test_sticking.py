@@ -201,7 +201,7 @@ def test_limits_by_direction_that_follow_from_a_constraint(open_fmu, speed):
     ('coordinate="x" force="mu*m*g" forceBack="m"', "unit mismatch: forceBack has the unit kg, expected kg.m/s2"),
     ('coordinate="x" force="mu*m*g" stictionBack="m"', "unit mismatch: stictionBack has the unit kg, expected kg.m/s2"),
     ('coordinate="x" force="mu*m*g" forceBack="m*der(v)"', "the forceBack of a friction depends on 'der(v)'"),
-    ('coordinate="x" force="mu*ground.force" forceBack="2*mu*ground.force"', "a <friction> with forceBack that follows from the force of a contact"),
+    ('coordinate="x" force="mu*ground.force" forceBack="2*mu*ground.force"', "a <friction> has forceBack, but follows from the force of a contact"),
     ('velocity="v" across="w" force="mu*m*g" stictionBack="m*g"', "a <friction> has both across and stictionBack"),
 ])  # fmt: skip
 def test_errors(tmp_path, words, message):

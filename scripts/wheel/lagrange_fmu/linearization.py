@@ -152,7 +152,7 @@ def linearize(system, at=None, method=None):
         rates = dict(zip(point.derivatives, point.read(point.derivatives)))
         moving = [f"{name} = {value:.6g}" for name, value in rates.items() if abs(value) > 1e-6]
         if moving:
-            warnings.warn(f"the operating point is not an equilibrium: {', '.join(moving)}", stacklevel=4)
+            warnings.warn(f"the operating point is not an equilibrium: {', '.join(moving)}; expected one, such as 'equilibrium' finds", stacklevel=4)
         return found
 
 

@@ -146,7 +146,7 @@ def _values(given, quantities, kind):
         try:
             values[key] = repr(float(value))
         except (TypeError, ValueError):
-            raise Problem(f"{key}: {value} is not a number") from None
+            raise Problem(f"{key}: {value} is not a number; expected one") from None
     return values
 
 

@@ -43,10 +43,11 @@ void warn_outside_domains(const struct Requirements *requirements, const struct 
     reported[requirement->operation] = requirement->line;
     if (requirement->operation == POWER)
       report_warning(diagnostics, requirement->line,
-                     "a root or fractional power of %g at the start values; expected a base %s", value,
+                     "the base of a root or fractional power is %g at the start values; expected one %s", value,
                      domain_text(POWER));
     else
-      report_warning(diagnostics, requirement->line, "%s(%g) at the start values; expected an argument %s",
+      report_warning(diagnostics, requirement->line,
+                     "%s(%g) has no finite value at the start values; expected an argument %s",
                      operation_name(requirement->operation), value, domain_text(requirement->operation));
   }
 }

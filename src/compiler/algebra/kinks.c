@@ -4,8 +4,8 @@
 #include "base/memory.h"
 
 /*
- * Returns the name of the kink of an inverse function of its own function, such as asin(sin(x)); NULL for none. It is
- * piecewise linear, and the series of a piece continues beyond the kink.
+ * Returns the name of the kink of an inverse function of its own function, such as asin(sin(x)); NULL for none. This is
+ * piecewise linear, and the series of a piece, a straight line, shows no sign of the kink at its end.
  */
 static const char *kink_without_series(const struct Graph *graph, Node node) {
   const struct Vertex *vertex = &graph->vertices[node];

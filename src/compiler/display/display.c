@@ -10,22 +10,22 @@
 #include "display/factors.h"
 #include "display/natural_order.h"
 
-/* Longest text inside of others, in characters; with a longer one the whole keeps the form of formula.h. */
+/* Longest text of a part, in characters; with a longer part, the whole is printed as by formula.h. */
 enum { LENGTH_LIMIT = 4000 };
 
-/* Deepest nesting of functions; beyond it the whole keeps that form. It bounds the stack. */
+/* Deepest nesting of parts; a deeper expression is printed as by formula.h. It bounds the stack. */
 enum { DEPTH_LIMIT = 60 };
 
 /* Longest sum, in characters, that is easy to read as a factor, such as 1 - cos(theta). */
 enum { SHORT_SUM = 24 };
 
 /*
- * Weights of the length of a form: products of inertia are read more easily if they are multiplied out, and so is the
- * side of an equation that would be one product.
+ * Weights of the length of a form. A form without expansion counts 1.4 times, since products of inertia are easier to
+ * read when multiplied out; a whole side of an equation that is one product counts 1.25 times.
  */
 static const double compact = 1.4, factored = 1.25;
 
-/* Returns the node's text inside of another, from known ones; NULL if it is too long. */
+/* Returns the text of a node that is part of another, and remembers it; NULL if it is too long. */
 static const char *text_inside(struct Display *display, Node node);
 
 /* Returns if(a > 0, ...); a closed contact is a condition by itself. */
@@ -86,7 +86,7 @@ static bool find_atom_texts(struct Display *display, const struct Atoms *atoms, 
   return true;
 }
 
-/* True for a product with a long factor that is a sum with functions. */
+/* True for a product of which one factor is a long sum with functions. */
 static bool is_factored(const struct Atoms *atoms, const struct Terms *terms, const char *const *texts) {
   bool has_sum = false;
   for (int k = 0; k < atoms->count && terms->count == 1; k++)
@@ -138,7 +138,7 @@ static const char *text_inside(struct Display *display, Node node) {
   }
   static char too_long[] = "";
   if (display->known[node] == NULL) {
-    display->known[node] = too_long; /* also ends circles of forms of a node */
+    display->known[node] = too_long; /* also ends the recursion where a form of the node contains the node itself */
     display->depth++;
     char *text = display->depth <= DEPTH_LIMIT ? shortest_text(display, node, false) : NULL;
     display->depth--;

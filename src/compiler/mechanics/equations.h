@@ -21,7 +21,9 @@ struct Equations {
   /* Linearized: the accelerations are explicit. residual has M = 1; inertia is M at the operating point. */
   bool explicit_form;
   struct NodeList rates; /* of the model's first-order states, without unknowns of unrolled blocks */
-  /* Power of the nonconservative forces: sum of Q_i v_i, F . dr/dt of Cartesian forces, and that of the driving forces. */
+  /*
+   * Power of the nonconservative forces: sum of Q_i v_i, F . dr/dt of Cartesian forces, and that of the driving forces.
+   */
   Node power;
   Node stated_power;                            /* the same; may contain acceleration symbols */
   Node kinetic, potential, total;               /* energies, see energies.h */

@@ -210,7 +210,9 @@ struct Preset {
   size_t count;
 };
 
-/* A condition of a task: the value of an expression lies between two numbers in its unit, one of which may be infinite. */
+/*
+ * A condition of a task: the value of an expression lies between two numbers in its unit, one of which may be infinite.
+ */
 struct Goal {
   const char *formula; /* of variables of the FMU */
   double minimum, maximum;

@@ -1,5 +1,5 @@
 /*
- * The cost model: arithmetic operations of the generated functions. By them the runtime chooses between methods and
+ * The cost model: arithmetic operations of the generated functions. From them the runtime chooses between methods and
  * limits the work of a communication step.
  */
 #pragma once

@@ -128,8 +128,8 @@ static struct IrFunction *build_weighted_gradient(const struct Program *program,
 }
 
 /*
- * Appends a column of the Jacobian: copies its right sides, which a column has for all rows of a block or for none,
- * then solves each block and copies the solutions.
+ * Appends a column of the Jacobian: copies its right sides, solves each block once, and copies the solutions. A column
+ * has right sides for all rows of a block or for none.
  */
 static void append_jacobian_column(const struct Program *program, struct CodeGenerator *generator, size_t column,
                                    struct BlockRows *rows) {

@@ -40,7 +40,7 @@ struct Program {
   /* The same for the functions in which a simulation spends its time. */
   bool derivatives_are_table, directional_is_table, series_is_table;
   bool switches_are_table;   /* the same for the functions of struct SwitchTable */
-  enum ProductForm products; /* in an order of the series */
+  enum ProductForm products; /* of one order of the series */
   const char *solver, *lu;   /* names and source files of the runtime's struct Solver and struct Lu; NULL without */
   struct StepWork work;      /* empty without a solver */
   struct OperationCounts operations; /* empty unless the method integrates by Taylor series */

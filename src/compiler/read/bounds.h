@@ -1,6 +1,7 @@
 /*
- * Bounds of expressions by interval arithmetic (R. E. Moore: Interval Analysis, 1966): each operation maps the bounds of
- * its operands. Bounds that are found contain every value; a symbol that occurs twice makes them wider than necessary.
+ * Bounds of expressions by interval arithmetic (R. E. Moore: Interval Analysis, 1966): each operation maps the bounds
+ * of its operands. Bounds that are found contain every value; a symbol that occurs twice makes them wider than
+ * necessary.
  */
 #pragma once
 

@@ -14,7 +14,7 @@ static void check_work(const struct Reader *reader) {
   const struct Model *model = reader->model;
   const struct Variable *work = work_of(model);
   if (work != NULL && !model->forces.any && !work_includes_all_forces(model))
-    report_error(reader->diagnostics, work->line, "<work/> without forces; expected a <force> or <dissipation>");
+    report_error(reader->diagnostics, work->line, "<work/> has no forces; expected a <force> or <dissipation>");
 }
 
 static void check_content(const struct Reader *reader) {
@@ -26,7 +26,7 @@ static void check_content(const struct Reader *reader) {
                  "an <output>");
   if (coordinates == 0 && (model->mechanism.body_count > 0 || model->displacements.count > 0 ||
                            model->energies.kinetic.node != ZERO || model->forces.any))
-    report_error(reader->diagnostics, 0, "masses or forces without coordinates; expected a <coordinate>");
+    report_error(reader->diagnostics, 0, "masses or forces belong to no coordinate; expected a <coordinate>");
   for (size_t i = 0; i < model->switches.event_count && is_motionless(model); i++)
     report_error(reader->diagnostics, model->switches.events[i].line,
                  "%s needs coordinates or states, which the system lacks; expected a <state>, such as <state "
@@ -215,7 +215,8 @@ static void warn_of_functions(const struct Reader *reader) {
     const struct NamedFunction *function = functions->slots[i].meaning;
     if (function != NULL && !function->is_used && *function->prefix == '\0')
       report_warning(reader->diagnostics, function->line,
-                     "nothing calls the function '%s', so that its expression is not checked", function->name);
+                     "nothing calls the function '%s', so that its expression is not checked; call it, or delete it",
+                     function->name);
   }
 }
 

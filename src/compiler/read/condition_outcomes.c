@@ -1,8 +1,8 @@
 /*
- * A condition depends on the signs of indicators, and on modes and Booleans by themselves, in short on atoms. Indicators
- * that are r u + c with numbers r and c, such as those of u > 1 and u < -1, belong to one line, that of u. The zeros of
- * its indicators divide a line into points and intervals. In a cell of the product of all lines no atom changes its
- * sign, and so the condition has one value there, by interval arithmetic (bounds.h).
+ * A condition depends on the signs of indicators, and on modes and Booleans by themselves, in short on atoms.
+ * Indicators that are r u + c with numbers r and c, such as those of u > 1 and u < -1, belong to one line, that of u.
+ * The zeros of its indicators divide a line into points and intervals. In a cell of the product of all lines no atom
+ * changes its sign, and so the condition has one value there, by interval arithmetic (bounds.h).
  *
  * A condition with the same value in all cells has one outcome. Cells outside of the bounds of u do not count. A motion
  * need not come to all other cells, so that some conditions with one outcome are not found.
@@ -138,7 +138,9 @@ static void append_atom(struct Analysis *analysis, Node node, Node indicator) {
 /* How a node occurs in the condition: its sign alone counts, or its value. */
 enum { UNUSED, AS_TRUTH, AS_VALUE };
 
-/* Appends the atoms of the condition, and the lines. Operands follow what uses them, as a cone is in topological order. */
+/*
+ * Appends the atoms of the condition, and the lines. Operands follow what uses them, as a cone is in topological order.
+ */
 static void find_atoms(struct Analysis *analysis) {
   const struct Model *model = analysis->model;
   const struct Graph *graph = model->graph;

@@ -40,8 +40,9 @@ static void report_index(struct Reader *reader, xmlNodePtr node) {
 static bool check_repetition(struct Reader *reader, xmlNodePtr node, const char *index, double from, double to) {
   bool are_whole = from == floor(from) && to == floor(to) && fmax(fabs(from), fabs(to)) < index_limit;
   if (!are_whole || to - from >= REPETITION_LIMIT) {
-    report_at(reader, node, "<for> from %.17g to %.17g; expected whole numbers below 1e9 and at most %d repetitions",
-              from, to, REPETITION_LIMIT);
+    report_at(reader, node,
+              "<for> runs from %.17g to %.17g; expected whole numbers below 1e9 and at most %d repetitions", from, to,
+              REPETITION_LIMIT);
     return false;
   }
   if (scope_find(reader->scope, index) == NULL) return true;

@@ -86,7 +86,7 @@ void apply_point(struct Model *model, struct Scope *scope, const char *const *po
   for (size_t i = 0; i < count; i++) {
     const char *equals = strchr(point[i], '=');
     char *name = format_text("%.*s", equals != NULL ? (int)(equals - point[i]) : 0, point[i]);
-    if (equals == NULL) report_error(diagnostics, 0, "--at %s: expected name=value", point[i]);
+    if (equals == NULL) report_error(diagnostics, 0, "--at %s names no value; expected NAME=VALUE", point[i]);
     else set_point(model, scope, name, equals + 1, 0, diagnostics);
   }
 }

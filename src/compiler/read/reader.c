@@ -171,7 +171,8 @@ static struct Model *read_file(const char *path, const struct ReaderOptions *opt
   xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
   if (root != NULL && is_element(root, "linearization")) {
     char *original = depth == 0 ? linearized_path(root, path) : NULL;
-    if (depth > 0) report_error(&local, line_of(root), "a linearization of a linearization; expected a <system>");
+    if (depth > 0)
+      report_error(&local, line_of(root), "the file linearizes another linearization; expected the file of a <system>");
     else if (original != NULL) {
       model = read_file(original, options, &local, depth + 1, scope);
       if (model != NULL) read_linearization(model, *scope, root, &local);

@@ -149,10 +149,13 @@ void add_sensitivities(struct Model *model, const struct Equations *equations, c
     report_error(diagnostics, 0, "--along does not support %s; expected a system without them", reason);
   for (size_t k = 0; k < count; k++) {
     if (find(model, names[k]) == NULL)
-      report_error(diagnostics, 0, "--along %s: expected a parameter, an input, a coordinate, a velocity or a state",
+      report_error(diagnostics, 0,
+                   "--along %s is not the name of a variable; expected a parameter, an input, a coordinate, a velocity "
+                   "or a state",
                    names[k]);
     for (size_t j = 0; j < k; j++)
-      if (strcmp(names[j], names[k]) == 0) report_error(diagnostics, 0, "--along %s: expected it once", names[k]);
+      if (strcmp(names[j], names[k]) == 0)
+        report_error(diagnostics, 0, "--along %s is given twice; expected it once", names[k]);
   }
   if (diagnostics->errors > 0) return;
   size_t outputs = model->outputs.count, reaction = append_reaction(model);

@@ -32,7 +32,8 @@ enum Status exchange_set_time(struct Instance *instance, double time) {
 /* True if the array exists and has an element for each state. */
 static bool check_states(struct Instance *instance, const void *array, size_t count) {
   if (count == lagrangian.state_count) return check_array(instance, array, count, "the array");
-  reject_call(instance, "%zu elements; expected %zu, the number of states", count, lagrangian.state_count);
+  reject_call(instance, "the array has %zu elements; expected %zu, the number of states", count,
+              lagrangian.state_count);
   return false;
 }
 
@@ -74,7 +75,8 @@ enum Status exchange_get_nominals(struct Instance *instance, double *nominal, si
 enum Status exchange_get_event_indicators(struct Instance *instance, double *indicator, size_t count) {
   size_t expected = indicator_count(lagrangian.switches);
   if (count != expected)
-    return reject_call(instance, "%zu elements; expected %zu, the number of event indicators", count, expected);
+    return reject_call(instance, "the array has %zu elements; expected %zu, the number of event indicators", count,
+                       expected);
   if (count == 0) return STATUS_DONE;
   if (!check_array(instance, indicator, count, "the array")) return STATUS_ERROR;
   reading_begin(instance);

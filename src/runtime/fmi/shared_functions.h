@@ -1,7 +1,7 @@
 /*
- * The FMI functions that differ between versions only in their names. Each version includes this once, after its
- * struct FmiComponent and three macros: FMI(name) puts the version's prefix before a name. GetNominalsOfContinuousStates
- * may be called in the class NOMINALS. QUIET_CATEGORIES are logged without debug logging.
+ * The FMI functions that differ between versions only in their names. Each version includes this once, after its struct
+ * FmiComponent and three macros: FMI(name) puts the version's prefix before a name. GetNominalsOfContinuousStates may
+ * be called in the class NOMINALS. QUIET_CATEGORIES are logged without debug logging.
  */
 #ifndef SHARED_FUNCTIONS_H
 #define SHARED_FUNCTIONS_H

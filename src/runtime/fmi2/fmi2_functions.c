@@ -41,7 +41,7 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
   struct Instance *instance = enter(c, FUNCTION_SET_UP, __func__);
   if (instance == NULL) return fmi2Error;
   if (!instance->fmu_state->experiment_defined)
-    return status_of(reject_call(instance, "expected fmi2SetupExperiment before it"));
+    return status_of(reject_call(instance, "fmi2SetupExperiment was not called; expected it before this function"));
   instance->fmu_state->phase = PHASE_INITIALIZATION;
   return fmi2OK;
 }

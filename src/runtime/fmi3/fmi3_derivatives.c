@@ -61,7 +61,7 @@ fmi3Status fmi3GetOutputDerivatives(fmi3Instance c, const fmi3ValueReference vr[
 static fmi3Status no_dependencies(fmi3Instance c, const char *name) {
   struct Instance *instance = enter(c, FUNCTION_GET_DEPENDENCIES, name);
   if (instance == NULL) return fmi3Error;
-  return status_of(reject_call(instance, "expected no call, since providesPerElementDependencies is false"));
+  return status_of(reject_call(instance, "providesPerElementDependencies is false; expected no call"));
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference valueReference,

@@ -48,7 +48,7 @@ const unsigned *expand_references(struct FmiComponent *component, enum Workspace
       !check_array(instance, values.array, values.count, "values") || !count_values(instance, vr, nvr, &count))
     return NULL;
   if (count != values.count) {
-    reject_call(instance, "%zu values; expected %zu, as many as the variables have", values.count, count);
+    reject_call(instance, "there are %zu values; expected %zu, as many as the variables have", values.count, count);
     return NULL;
   }
   unsigned *references = reserve_workspace(component, use, count, sizeof *references);

@@ -60,8 +60,8 @@ struct EventLaws {
   /* Checks the laws at the end of a communication step. Returns NULL, or the violated one, after logging the cause. */
   const char *(*check)(struct Instance *instance, double time);
   /*
-   * Handles a solver that cannot continue: the zero of an indicator that it cannot reach may be near. Returns NULL after
-   * passing one, problem if there is none, or the reason why the motion ends there.
+   * Handles a solver that cannot continue: the zero of an indicator that it cannot reach may be near. Returns NULL
+   * after passing one, problem if there is none, or the reason why the motion ends there.
    */
   const char *(*pass_barrier)(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                               struct EventProgress *progress);

@@ -1,12 +1,12 @@
 /*
  * Slip directions at the onset of slip. A friction at its limit S slides from rest along the unit vector d for which
- * its acceleration a(d), with the friction force -S d, is a nonnegative multiple of d. With the Delassus matrix W of its
- * velocity, a(d) = b - S W d; for a symmetric positive definite W there is one d if |W^-1 b| >= S, else it sticks. The
- * acceleration across d is a function of the angle of d. Where it changes from left to right, the angle is bracketed in
- * one of SECTORS sectors, the nearest to the last direction first. It is located by false position with halved weights
- * (a variant of the Illinois method) and a bisection every third step. The directions of several frictions are found
- * one after another, in nonlinear Gauss-Seidel sweeps, until none rotates; after SWEEP_LIMIT sweeps the search fails.
- * Each angle needs an evaluation of the accelerations.
+ * its acceleration a(d), with the friction force -S d, is a nonnegative multiple of d. With the Delassus matrix W of
+ * its velocity, a(d) = b - S W d; for a symmetric positive definite W there is one d if |W^-1 b| >= S, else it sticks.
+ * The acceleration across d is a function of the angle of d. Where it changes from left to right, the angle is
+ * bracketed in one of SECTORS sectors, the nearest to the last direction first. It is located by false position with
+ * halved weights (a variant of the Illinois method) and a bisection every third step. The directions of several
+ * frictions are found one after another, in nonlinear Gauss-Seidel sweeps, until none rotates; after SWEEP_LIMIT sweeps
+ * the search fails. Each angle needs an evaluation of the accelerations.
  */
 #include "planes/plane_starts.h"
 

@@ -15,7 +15,7 @@ static double first_count(double time, double offset, double period) {
   return count;
 }
 
-/* A period that is not positive is an error at the start (conditions.c); the sample is then put there. */
+/* An invalid period, which conditions.c reports, becomes 0, and the sample is at the present time. */
 void samples_start(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
   struct Resolution resolution = resolution_of(instance);

@@ -1,8 +1,8 @@
 /*
  * Time events: zeros of branches that depend on time, parameters and modes only.
  *
- * Between events an affine branch is f(t) = a + b t. Newton's method t - f(t) / b gives its zero from any t in one step.
- * Near the zero f(t) is an exact difference of close numbers, so a second step gives the double next to -a / b.
+ * Between events an affine branch is f(t) = a + b t. Newton's method t - f(t) / b gives its zero from any t in one
+ * step. Near the zero f(t) is an exact difference of close numbers, so a second step gives the double next to -a / b.
  *
  * The first zero of other branches, such as sin(3 t) - 1/2, is searched in one interval after another, as in search.c:
  * the coefficients of the Chebyshev polynomial bound f over an interval. Intervals begin short, and are doubled while f
@@ -30,7 +30,7 @@ static const double first_length = 1e-3;
 /* Rounding error of a value, relative to its size and its change since time 0: a few operations. */
 static const double error_of_value = 16.0 * DBL_EPSILON;
 
-/* Evaluates with accelerations of 0. */
+/* Evaluates the branches at a time, with accelerations of 0, on which time events do not depend. */
 void time_events_values(struct Resolution *resolution, double time) {
   struct Point point = instance_point(resolution->instance);
   point.time = time;
@@ -102,8 +102,9 @@ static enum Verdict judge_interval(struct Resolution *resolution, size_t branch,
 }
 
 /*
- * Returns the first fall of a curved branch below 0 in an interval; INFINITY for none. A search of TIME_INTERVAL_LIMIT intervals
- * without a zero returns its end: the importer handles an event without effect there, and the search continues.
+ * Returns the first fall of a curved branch below 0 in an interval; INFINITY for none. A search of TIME_INTERVAL_LIMIT
+ * intervals without a zero returns its end: the importer handles an event without effect there, and the search
+ * continues.
  */
 static double next_fall(struct Resolution *resolution, size_t branch, double from, double end) {
   double length = first_length * fmax(1.0, fabs(from));

@@ -12,7 +12,7 @@ from .shared_arguments import SYSTEM_OR_FMU
 def bounds(text):
     name, _, ends = text.partition("=")
     if ends.count(":") != 1:
-        raise argparse.ArgumentTypeError(f"'{text}' is not NAME=LOW:HIGH with two values")
+        raise argparse.ArgumentTypeError(f"'{text}' has no two bounds; expected NAME=LOW:HIGH")
     return name, tuple(ends.split(":"))
 
 

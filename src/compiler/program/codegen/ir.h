@@ -20,7 +20,7 @@ struct Instruction {
   Slot operands[OPERAND_LIMIT];
 };
 
-/* The instructions of a function, in an order in which each result precedes its uses. */
+/* The instructions of a function. */
 struct IrFunction {
   struct Instruction *instructions;
   size_t count;

@@ -7,7 +7,7 @@
 #include "program/codegen/ir.h"
 #include "program/codegen/code_generator.h"
 
-/* Provisional spaces: slots are final only when it is known which nodes have rows. */
+/* Provisional spaces of slots (ir.h), which become final when it is known which nodes have rows. */
 enum {
   SPACE_OF_NODES = SPACE_COUNT, /* the series of a node */
   SPACE_OF_ACCELERATIONS,       /* the row of an acceleration */

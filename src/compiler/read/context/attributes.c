@@ -122,7 +122,7 @@ struct Dimension unit_attribute(struct Reader *reader, xmlNodePtr node, const ch
   char *text = attribute(node, name);
   if (text != NULL && !unit_parse(text, &dimension, &problem)) {
     char *remedy = unit_remedy(text);
-    report_at(reader, node, "the unit '%s' is not known: %s", text, remedy != NULL ? remedy : problem);
+    report_at(reader, node, "the unit '%s' is not known; %s", text, remedy != NULL ? remedy : problem);
   }
   reader->scope->checks_units |= text != NULL;
   return dimension;

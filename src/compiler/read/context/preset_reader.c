@@ -77,7 +77,7 @@ void read_preset(struct Reader *reader, xmlNodePtr node) {
   struct Preset preset = {.name = name_attribute(reader, node, "name"), .description = attribute(node, "description")};
   if (preset.name == NULL) return;
   if (preset_named(model, preset.name) != NULL)
-    report_at(reader, node, "a second preset '%s'; expected another name", preset.name);
+    report_at(reader, node, "the preset '%s' is defined already; expected another name", preset.name);
   for (xmlNodePtr child = xmlFirstElementChild(node); child != NULL; child = xmlNextElementSibling(child))
     read_value(reader, child, &preset);
   if (xmlFirstElementChild(node) == NULL)

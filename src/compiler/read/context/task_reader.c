@@ -45,7 +45,7 @@ void read_task(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "limit is %g s; expected a time above hold, %g s", task.limit, task.hold);
   for (size_t i = 0; i < model->task_count; i++)
     if (strcmp(model->tasks[i].name, task.name) == 0)
-      report_at(reader, node, "a second task '%s'; expected another name", task.name);
+      report_at(reader, node, "the task '%s' is defined already; expected another name", task.name);
   if (task.preset != NULL && preset_named(model, task.preset) == NULL)
     report_at(reader, node,
               "the task starts from the preset '%s', which does not exist; expected the name of a <preset>",

@@ -215,29 +215,29 @@ static void read_output(struct Reader *reader, xmlNodePtr node) {
 void read_solver(struct Reader *reader, xmlNodePtr node) {
   char *method = attribute(node, "method");
   reader->model->solver.line = scope_line(reader->scope, line_of(node));
-  if (reader->has_solver) report_at(reader, node, "a second <solver>; expected one");
+  if (reader->has_solver) report_at(reader, node, "the system has a second <solver>; expected one");
   reader->has_solver = true;
   if (method != NULL) reader->model->solver.method = method_named(method);
   double *tolerance = &reader->model->solver.tolerance;
   if (number_attribute(reader, node, "tolerance", tolerance) && !(*tolerance > 0 && *tolerance < 1))
-    report_at(reader, node, "tolerance %g; expected a number between 0 and 1", *tolerance);
+    report_at(reader, node, "tolerance is %g; expected a number between 0 and 1", *tolerance);
   if (*tolerance > 0 && *tolerance < 1e-14)
     report_warning(reader->diagnostics, line_of(node),
                    "tolerance %g is below the rounding error of doubles; expected 1e-14 or more", *tolerance);
   number_attribute(reader, node, "maxStep", &reader->model->solver.max_step);
   double *steps = &reader->model->solver.max_steps;
   if (number_attribute(reader, node, "maxSteps", steps) && !(*steps >= 1 && *steps <= 1e9 && *steps == floor(*steps)))
-    report_at(reader, node, "maxSteps %g; expected a whole number from 1 to 1e9", *steps);
+    report_at(reader, node, "maxSteps is %g; expected a whole number from 1 to 1e9", *steps);
 }
 
 void read_experiment(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  if (reader->has_experiment) report_at(reader, node, "a second <experiment>; expected one");
+  if (reader->has_experiment) report_at(reader, node, "the system has a second <experiment>; expected one");
   reader->has_experiment = true;
   number_attribute(reader, node, "startTime", &model->experiment.start_time);
   number_attribute(reader, node, "stopTime", &model->experiment.stop_time);
   if (number_attribute(reader, node, "stepSize", &model->experiment.step_size) && !(model->experiment.step_size > 0))
-    report_at(reader, node, "stepSize %g; expected a positive number", model->experiment.step_size);
+    report_at(reader, node, "stepSize is %g; expected a positive number", model->experiment.step_size);
   double start = isnan(model->experiment.start_time) ? 0.0 : model->experiment.start_time;
   if (model->experiment.stop_time <= start)
     report_at(reader, node, "stopTime %g is not after startTime %g; expected a later one", model->experiment.stop_time,
@@ -249,7 +249,7 @@ static void read_input_rates(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
   double derivatives = 0;
   if (number_attribute(reader, node, "derivatives", &derivatives) && derivatives != 1 && derivatives != 2)
-    report_at(reader, node, "derivatives=\"%g\" of <input>; expected 1 or 2", derivatives);
+    report_at(reader, node, "derivatives=\"%g\" of <input> is not possible; expected 1 or 2", derivatives);
   size_t index = model->inputs.count - 1;
   for (int k = 0; k < 2 && derivatives >= k + 1; k++, index++) {
     Node rate = append_input_rate(reader); /* may move the list */

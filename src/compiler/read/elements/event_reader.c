@@ -44,7 +44,8 @@ static Node target_of(struct Reader *reader, xmlNodePtr node) {
     if (found != NULL && found->kind == targets[i].kind) symbol = quantity->node;
     else report_target(reader, node, targets[i].attribute, name != NULL ? name : "", found);
   }
-  if (given != 1) report_at(reader, node, "a <set> needs one of velocity, coordinate, state and mode");
+  if (given != 1)
+    report_at(reader, node, "a <set> has %zu of velocity, coordinate, state and mode; expected one", given);
   return symbol;
 }
 
@@ -52,11 +53,10 @@ static void check_target(struct Reader *reader, xmlNodePtr node, const struct Ev
   const struct Symbol *target = graph_symbol_of(reader->model->graph, symbol);
   bool is_state = target->kind == COORDINATE || target->kind == VELOCITY;
   if (is_state && reader->model->prescribed.motions[target->index].is_prescribed)
-    report_at(reader, node, "<set> of '%s', which is driven; expected a coordinate without an acceleration",
-              target->name);
+    report_at(reader, node, "'%s' of <set> is a driven coordinate; expected one without an acceleration", target->name);
   for (size_t i = 0; i < event->assignment_count; i++)
     if (event->assignments[i].symbol == symbol)
-      report_at(reader, node, "a second <set> of '%s' in one <%s>; expected one", target->name,
+      report_at(reader, node, "'%s' is set twice in one <%s>; expected one <set> of it", target->name,
                 (const char *)node->parent->name);
 }
 
@@ -127,9 +127,10 @@ static void read_condition(struct Reader *reader, xmlNodePtr node, const char *w
   if (is_given || is_boolean_parameter(reader, value)) {
     event->condition = condition_of_modes(reader, value, location.line);
     if (direction != NULL)
-      report_at(reader, node,
-                "an <event> whose when is a condition, with a direction; expected an expression that passes 0, or "
-                "no direction");
+      report_at(
+          reader, node,
+          "the when of an <event> is a condition, which has no direction; expected an expression that passes 0, or "
+          "no direction");
   } else if (value != ZERO) {
     event->condition = last_sign_of(reader->scope, value, location.line);
     event->last_sign = new_mode(reader, "side", when);
@@ -193,7 +194,7 @@ static void read_assignments(struct Reader *reader, xmlNodePtr node, struct Even
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (child->type == XML_ELEMENT_NODE) read_assignment(reader, child, event);
   if (event->assignment_count == 0 && reader->diagnostics->errors == 0)
-    report_at(reader, node, "%s that changes nothing; expected a <set>", words_for(event));
+    report_at(reader, node, "%s changes nothing; expected a <set> in it", words_for(event));
   if (reader->diagnostics->errors == 0) check_forces(reader, event, line_of(node));
 }
 

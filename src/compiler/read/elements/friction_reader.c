@@ -10,14 +10,15 @@
 static bool read_velocity(struct Reader *reader, xmlNodePtr node, struct Quantity *velocity) {
   bool has_coordinate = has_attribute(node, "coordinate");
   if (has_coordinate == has_attribute(node, "velocity")) {
-    report_at(reader, node, "a <friction> needs either coordinate, or velocity with an expression such as v - vBelt");
+    report_at(reader, node, "a <friction> has %s coordinate %s velocity; expected one, such as velocity=\"v - vBelt\"",
+              has_coordinate ? "both" : "neither", has_coordinate ? "and" : "nor");
     return false;
   }
   if (!has_coordinate) return expression_attribute(reader, node, "velocity", IN_CONSTRAINT, velocity);
   char *name = reference_attribute(reader, node, "coordinate");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
   if (symbol == NULL)
-    report_at(reader, node, "a <friction> of '%s', which is not a coordinate; expected the name of one",
+    report_at(reader, node, "'%s' of <friction> is not a coordinate; expected the name of one",
               name != NULL ? name : "");
   else {
     const struct Variable *variable = &reader->model->velocities.items[symbol->index];
@@ -93,7 +94,7 @@ static void read_forces_back(struct Reader *reader, xmlNodePtr node, struct Dime
   bool differs = friction->sliding_back != friction->sliding;
   if (differs && (follows_contact(model, friction->sliding) || follows_contact(model, friction->sliding_back)))
     report_at(reader, node,
-              "a <friction> with forceBack that follows from the force of a contact; expected the force of a "
+              "a <friction> has forceBack, but follows from the force of a contact; expected the force of a "
               "constraint, or one force in both directions");
 }
 

@@ -25,7 +25,7 @@ static void check_value_alone(struct Reader *reader, xmlNodePtr node) {
   for (size_t i = 0; i < sizeof others / sizeof *others; i++)
     if (has_attribute(node, others[i]))
       report_at(reader, node,
-                "a <%s> with a value and a %s; expected value=\"...\" alone for one that follows from "
+                "a <%s> has a value and a %s; expected value=\"...\" alone for one that follows from "
                 "others, or start=\"...\" for one that is set",
                 (const char *)node->name, others[i]);
 }
@@ -75,7 +75,7 @@ static void read_value(struct Reader *reader, xmlNodePtr node, const char *name,
   bool is_true = strcmp(text, "true") == 0, is_false = strcmp(text, "false") == 0;
   if (variable->type == TYPE_BOOLEAN && (is_true || is_false)) variable->start = is_true ? 1.0 : 0.0;
   else if (variable->type == TYPE_BOOLEAN && (strcasecmp(text, "true") == 0 || strcasecmp(text, "false") == 0))
-    report_at(reader, node, "'%s': did you mean '%s', in small letters?", text,
+    report_at(reader, node, "'%s' is not in small letters; expected %s", text,
               strcasecmp(text, "true") == 0 ? "true" : "false");
   else if (!number_in(reader, node, name, text, &variable->start)) variable->start = 0.0;
 }

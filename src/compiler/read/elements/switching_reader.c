@@ -73,7 +73,7 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
   char *coordinate = reference_attribute(reader, node, "coordinate");
   reader->present->number = reader->model->switches.contact_count;
   if (!has_attribute(node, "min") && !has_attribute(node, "max"))
-    report_at(reader, node, "a <stop> without min and max; expected one of them, or both");
+    report_at(reader, node, "a <stop> has neither min nor max; expected one of them, or both");
   if (coordinate != NULL && has_attribute(node, "min")) append_contact(reader, end_of_stop(node, coordinate, "min"));
   if (coordinate != NULL && has_attribute(node, "max")) append_contact(reader, end_of_stop(node, coordinate, "max"));
 }
@@ -128,7 +128,7 @@ static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
   size_t count = count_shape_contacts(reader, node);
   if (is_compliant(node)) return;
   if (!has_attribute(node, "name")) {
-    report_at(reader, node, "a rigid <contact> without a name; expected name=\"...\"");
+    report_at(reader, node, "a rigid <contact> has no name; expected name=\"...\"");
     return;
   }
   struct Variable contact = common_attributes(reader, node);
@@ -150,7 +150,10 @@ void declare_contact(struct Reader *reader, xmlNodePtr node) {
   reader->present->number = reader->model->switches.contact_count;
   if (is_of_shapes(node)) declare_shape_contact(reader, node);
   else if (is_of_gap(node)) append_contact(reader, common_attributes(reader, node));
-  else report_at(reader, node, "a <contact> needs a name and a gap, or shapes: between=\"...\" and=\"...\"");
+  else
+    report_at(reader, node,
+              "a <contact> has neither a name with a gap nor two shapes; expected name=\"...\" gap=\"...\", or "
+              "between=\"...\" and=\"...\"");
 }
 
 void number_modes(struct Reader *reader) {
@@ -174,7 +177,7 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
   double value = graph_is_constant(model->graph, restitution.node) ? graph_value(model->graph, restitution.node) : 0.0;
   if (!(value >= 0.0 && value <= 1.0))
     report_error(reader->diagnostics, line_of_attribute(node, "restitution"),
-                 "the restitution %g; expected one from 0 to 1", value);
+                 "the restitution is %g; expected one from 0 to 1", value);
   contact->gap = gap;
   contact->restitution = restitution.node;
   if (!graph_depends_on(model->graph, gap, COORDINATE))
@@ -240,8 +243,7 @@ void read_stop(struct Reader *reader, xmlNodePtr node) {
   char *name = reference_attribute(reader, node, "coordinate");
   const struct Symbol *symbol = name != NULL ? find_coordinate(reader, name) : NULL;
   if (symbol == NULL)
-    report_at(reader, node, "a <stop> of '%s', which is not a coordinate; expected the name of one",
-              name != NULL ? name : "");
+    report_at(reader, node, "'%s' of <stop> is not a coordinate; expected the name of one", name != NULL ? name : "");
   static const char *const ends[] = {"min", "max"};
   size_t number = reader->present->number;
   bool is_declared = number < reader->model->switches.contact_count; /* else its coordinate had no valid name */

@@ -51,7 +51,7 @@ static struct Quantity parse_with_dummy(struct Parser *parser, const char *name,
 
 static void check_nesting(struct Parser *parser) {
   if (parser->scope->dummy_count == DUMMY_LIMIT)
-    FAIL(parser, "%s: more than %d nested integrals and derivatives; expected fewer", parser->location.what,
+    FAIL(parser, "%s: integrals and derivatives are nested more than %d deep; expected fewer", parser->location.what,
          DUMMY_LIMIT);
 }
 
@@ -60,13 +60,15 @@ static void check_nesting(struct Parser *parser) {
  * reading position does not move.
  */
 static char *look_ahead_for_name(struct Parser *parser, const char **end) {
+  char buffer[32];
   const char *begin = parser->next;
   for (int depth = 0; *parser->next != '\0' && depth >= 0 && !(depth == 0 && *parser->next == ','); parser->next++)
     depth += (*parser->next == '(') - (*parser->next == ')');
   expect_character(parser, ',', format_text("before the name of %s", derivative_form));
   skip_space(parser);
   if (!isalpha((unsigned char)*parser->next) && *parser->next != '_')
-    FAIL(parser, "%s: expected a name at the end of %s", parser->location.what, derivative_form);
+    FAIL(parser, "%s: expected a name at the end of %s, found %s", parser->location.what, derivative_form,
+         found(parser, buffer));
   char *name = parser->failed ? NULL : read_name(parser);
   expect_character(parser, ')', format_text("after the name of %s", derivative_form));
   *end = parser->next;
@@ -180,7 +182,7 @@ static size_t parse_node_count(struct Parser *parser) {
   if (!accept_character(parser, ',')) return 0;
   long count = parse_whole(parser, "the number of nodes of integral(...)");
   if (!parser->failed && (count < 1 || count > QUADRATURE_LIMIT))
-    FAIL(parser, "%s: integral(...) by %ld nodes; expected 1 to %d", parser->location.what, count, QUADRATURE_LIMIT);
+    FAIL(parser, "%s: integral(...) has %ld nodes; expected 1 to %d", parser->location.what, count, QUADRATURE_LIMIT);
   return parser->failed ? 0 : (size_t)count;
 }
 

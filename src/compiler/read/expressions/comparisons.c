@@ -87,7 +87,7 @@ static Node parse_relation(struct Parser *parser) {
   if (parser->failed) return ZERO;
   if (comparison == NO_COMPARISON) {
     if (graph_is_constant_in_time(graph, left.node)) return left.node;
-    FAIL(parser, "%s: a condition that is not a comparison; expected one such as x > 0", parser->location.what);
+    FAIL(parser, "%s: a condition is not a comparison; expected one such as x > 0", parser->location.what);
     return ZERO;
   }
   struct Quantity right = parse_sum(parser);
@@ -117,7 +117,7 @@ static Node parse_group(struct Parser *parser) {
   if (*parser->next != '(' || !is_group(parser)) return parse_relation(parser);
   parser->next++;
   if (++parser->nesting > 100)
-    FAIL(parser, "%s: more than 100 nested conditions; expected fewer, or a <define> for a part",
+    FAIL(parser, "%s: conditions are nested more than 100 deep; expected fewer, or a <define> for a part",
          parser->location.what);
   Node condition = parser->failed ? ZERO : parse_condition(parser);
   parser->nesting--;

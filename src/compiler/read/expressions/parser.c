@@ -55,7 +55,7 @@ static struct Quantity parse_sign(struct Parser *parser);
 /* Counts a level of recursion, up to a limit, so that no input overflows the stack. */
 static void enter(struct Parser *parser) {
   if (++parser->nesting > NESTING_LIMIT + 1)
-    FAIL(parser, "%s: more than %d nested parentheses or powers; expected fewer, or a <define> for a part",
+    FAIL(parser, "%s: parentheses or powers are nested more than %d deep; expected fewer, or a <define> for a part",
          parser->location.what, NESTING_LIMIT);
 }
 

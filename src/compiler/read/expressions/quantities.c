@@ -91,7 +91,8 @@ struct Quantity quantity_multiply(struct Parser *parser, struct Quantity a, stru
 }
 
 struct Quantity quantity_divide(struct Parser *parser, struct Quantity a, struct Quantity b) {
-  if (b.node == ZERO) FAIL(parser, "%s: division by zero", parser->location.what);
+  if (b.node == ZERO)
+    FAIL(parser, "%s: a division by zero has no value; expected another divisor", parser->location.what);
   struct Quantity result = {.node = divide(parser->graph, a.node, b.node),
                             .dimension = dimension_multiply(a.dimension, b.dimension, -1.0),
                             .factor = factor_of_product(a.factor, factor_raised(b.factor, -1.0)),
@@ -119,7 +120,8 @@ static void check_power(struct Parser *parser, Node base, Node exponent) {
     FAIL(parser, "%s: (%g)^(%g) has no finite value; expected %s", parser->location.what, b, n,
          b < 0 ? "a positive base, or sign(x)*abs(x)^n for an odd root" : "another base or exponent");
   else if (base_given && !exponent_given && b <= 0)
-    FAIL(parser, "%s: a power of %g with an exponent that varies; expected a positive base", parser->location.what, b);
+    FAIL(parser, "%s: the base of a power is %g, and its exponent varies; expected a positive base",
+         parser->location.what, b);
   require_finite(parser, "a power");
   if (!exponent_given || n != floor(n))
     require_domain(&parser->scope->requirements, graph, POWER, base, line_after_reading(parser));

@@ -179,7 +179,7 @@ static struct VectorQuantity sum_of_vectors(struct Parser *parser, struct Vector
 static struct VectorQuantity parse_vector(struct Parser *parser) {
   enum { NESTING_LIMIT = 1000 }; /* as in parser.c */
   if (++parser->nesting > NESTING_LIMIT)
-    FAIL(parser, "%s: more than %d nested parentheses; expected fewer", parser->location.what, NESTING_LIMIT);
+    FAIL(parser, "%s: parentheses are nested more than %d deep; expected fewer", parser->location.what, NESTING_LIMIT);
   if (parser->failed) return no_arrow;
   bool is_negative = accept_character(parser, '-');
   struct VectorQuantity sum = parse_scaled(parser);

@@ -107,7 +107,7 @@ static bool read_sizes(struct RobotFile *urdf, xmlNodePtr node, const char *name
     largest = fmax(largest, sizes[i]);
   }
   if (urdf->diagnostics->errors == errors && (least < 0 || (touches && !(largest > 0))))
-    report_error(urdf->diagnostics, line_of(node), "%s=\"%.60s\" of <%s>; expected %s above 0", name,
+    report_error(urdf->diagnostics, line_of(node), "%s=\"%.60s\" of <%s> is not valid; expected %s above 0", name,
                  attribute(node, name), (const char *)node->name, count == 1 ? "a number" : "sides");
   return largest > 0;
 }

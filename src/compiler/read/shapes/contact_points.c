@@ -167,7 +167,9 @@ static void ellipsoid_contact(const struct ShapePair *pair, struct ContactPoints
       (struct ContactPoint){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach), ZERO};
 }
 
-/* Appends the contact point of two balls about the nearest points of two shapes: the first point, and the vector to it. */
+/*
+ * Appends the contact point of two balls about the nearest points of two shapes: the first point, and the vector to it.
+ */
 static void append_ball_contact(const struct ShapePair *pair, struct Vector first, struct Vector between,
                                 Node second_radius, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;

@@ -64,7 +64,7 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
   shapes[1] = shape_of_attribute(reader, node, "and");
   if (shapes[0] == NULL || shapes[1] == NULL) return false;
   if (shapes[0] == shapes[1]) {
-    report_at(reader, node, "a <contact> of '%s' with itself; expected two shapes", shapes[0]->name);
+    report_at(reader, node, "a <contact> is between '%s' and itself; expected two shapes", shapes[0]->name);
     return false;
   }
   for (int i = 0; i < 2; i++)

@@ -29,9 +29,10 @@ static bool read_scale(struct Reader *reader, xmlNodePtr node, double scale[3]) 
   if (count == 1) scale[1] = scale[2] = scale[0];
   is_right = is_right && (count == 1 || count == 3);
   if (!is_right && reader->diagnostics->errors == errors)
-    report_at(reader, node,
-              "scale=\"%.60s\" of <shape>; expected a number other than 0, or three of them such as 1 1 -1",
-              attribute(node, "scale"));
+    report_at(
+        reader, node,
+        "scale=\"%.60s\" of <shape> is not valid; expected a number other than 0, or three of them such as 1 1 -1",
+        attribute(node, "scale"));
   return is_right;
 }
 

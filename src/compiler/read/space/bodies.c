@@ -233,8 +233,8 @@ static bool has_right_attributes(struct Reader *reader, xmlNodePtr node) {
             is_in_frame
                 ? "a <body> in a frame rotates with it; expected Ixx, Iyy, Izz, Ixy, Ixz, Iyz in place of angle "
                   "and inertia"
-                : "<body> needs either angle and inertia, of a planar body, or in=\"...\", the frame that "
-                  "it is in (base for none), with Ixx, Iyy, Izz, Ixy, Ixz, Iyz");
+                : "the rotation of <body> is not determined; expected angle and inertia, or in=\"...\" with the name "
+                  "of a frame or base, and Ixx, Iyy, Izz, Ixy, Ixz, Iyz");
   return false;
 }
 

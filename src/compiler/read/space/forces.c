@@ -215,7 +215,9 @@ void read_force(struct Reader *reader, xmlNodePtr node) {
   for (int axis = 0; axis < 3; axis++) has_components |= has_attribute(node, axes[axis]);
   bool is_along_frame = has_attribute(node, "in");
   if ((coordinate == NULL) == (on == NULL) || has_components != (on != NULL) || (is_along_frame && on == NULL))
-    report_at(reader, node, "<force> needs either coordinate=\"...\" or on=\"...\" with x, y or z");
+    report_at(
+        reader, node,
+        "the direction of <force> is not determined; expected coordinate=\"...\" alone, or on=\"...\" with x, y or z");
   else if (on != NULL && !is_blank(node))
     report_at(reader, node, "<force on=\"%s\"> contains text; expected the force in x, y and z only", on);
   else if (coordinate != NULL) add_generalized_force(reader, node, coordinate);

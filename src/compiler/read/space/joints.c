@@ -152,7 +152,7 @@ void declare_joint(struct Reader *reader, xmlNodePtr node) {
   check_attribute(reader, node, "shape", "rolling", false);
   check_attribute(reader, node, "holds", "rolling", false);
   struct Variable joint = common_attributes(reader, node);
-  struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)};
+  struct Quantity word = {.node = graph_constant(reader->model->graph, NAN)}; /* the name has no value */
   scope_define(reader->scope, joint.name, word, joint.line);
   reader->present->number = reader->model->constraints.count;
   for (const enum ConstrainedQuantity *quantity = type != NULL ? type->quantities

@@ -107,10 +107,11 @@ static void check_parts(struct Reader *reader, xmlNodePtr node, const char *name
 void check_rotation(struct Reader *reader, xmlNodePtr node) {
   bool by_quaternion = has_attribute(node, "quaternion"), by_axis = has_attribute(node, "axis");
   if (by_quaternion == by_axis || by_axis != has_attribute(node, "angle"))
-    report_at(reader, node, "<rotate> needs either axis=\"...\" with angle=\"...\" or quaternion=\"...\"");
+    report_at(reader, node,
+              "the rotation of <rotate> is not determined; expected axis=\"...\" angle=\"...\", or quaternion=\"...\"");
   else check_parts(reader, node, by_axis ? "axis" : "quaternion", by_axis ? 3 : 4);
   if (by_quaternion && node != quaternion_of(node->parent))
-    report_at(reader, node, "a second quaternion in one frame; expected a <frame> in this one for it");
+    report_at(reader, node, "a frame has a second quaternion; expected a <frame> in this one for it");
 }
 
 void rotate(struct Reader *reader, xmlNodePtr node, struct Pose *pose) {

@@ -243,7 +243,8 @@ static void report_schema_error(void *context, xmlErrorPtr error) {
   xmlNodePtr element = error->node;
   if (check->last != NULL) return;
   if (element == NULL || error->message == NULL) {
-    report_error(check->diagnostics, error->line, "the file does not match the schema of system.xml");
+    report_error(check->diagnostics, error->line,
+                 "the file does not match the schema; expected the elements and attributes of fmu/system.xsd");
     return;
   }
   switch (error->code) {
@@ -277,7 +278,8 @@ void schema_check(xmlDocPtr document, struct Diagnostics *diagnostics) {
     bool is_right = xmlSchemaValidateDoc(validation, document) == 0;
     show_rest(&check);
     if (!is_right && diagnostics->errors == errors)
-      report_error(diagnostics, 0, "the file does not match the schema of system.xml");
+      report_error(diagnostics, 0,
+                   "the file does not match the schema; expected the elements and attributes of fmu/system.xsd");
   } else {
     report_error(diagnostics, 0, "the schema of system.xml cannot be used; expected libxml2 with schema support");
   }

@@ -47,8 +47,8 @@ xmlNodePtr child_of(struct RobotFile *file, xmlNodePtr parent, const char *name)
   for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
     if (!is_element(node, name)) continue;
     if (found != NULL)
-      report_error(file->diagnostics, line_of(node), "a second <%s> in <%s>; expected one", name,
-                   (const char *)parent->name);
+      report_error(file->diagnostics, line_of(node), "<%s> has a second <%s>; expected one", (const char *)parent->name,
+                   name);
     else found = node;
   }
   return found;
@@ -92,7 +92,7 @@ bool read_numbers(struct RobotFile *file, xmlNodePtr node, const char *name, siz
   double read[3] = {0};
   if (parse_numbers(text, count, read) == count) memcpy(values, read, count * sizeof *values);
   else
-    report_error(file->diagnostics, line_of(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
+    report_error(file->diagnostics, line_of(node), "%s=\"%.60s\" of <%s> is not valid; expected %s", name, text,
                  (const char *)node->name,
                  count == 1 ? "a number such as 2, -0.5 or 1e-3" : "three numbers such as 0 0.5 -1e-3");
   return true;

@@ -54,7 +54,7 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
   mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
-    report_error(mjcf->file.diagnostics, line_of(node), "coordinate=\"%s\" of <compiler>; expected local",
+    report_error(mjcf->file.diagnostics, line_of(node), "coordinate=\"%s\" of <compiler> is not read; expected local",
                  attribute(node, "coordinate"));
   if (has_attribute(node, "assetdir") && mjcf->mesh_folder == NULL) mjcf->mesh_folder = attribute(node, "assetdir");
   if (has_attribute(node, "meshdir")) mjcf->mesh_folder = attribute(node, "meshdir");
@@ -63,7 +63,8 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
   else
     report_error(mjcf->file.diagnostics, line_of(node),
-                 "eulerseq=\"%.60s\" of <compiler>; expected three of the letters x, y, z, X, Y, Z", sequence);
+                 "eulerseq=\"%.60s\" of <compiler> is not valid; expected three of the letters x, y, z, X, Y, Z",
+                 sequence);
 }
 
 static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {

@@ -62,7 +62,7 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
                  contact.friction, (const char *)node->name);
   double d = contact.dimensions;
   if (d != 1 && d != 3 && d != 4 && d != 6)
-    report_error(mjcf->file.diagnostics, line_of(node), "condim=\"%g\" of <%s>; expected 1, 3, 4 or 6", d,
+    report_error(mjcf->file.diagnostics, line_of(node), "condim=\"%g\" of <%s> is not valid; expected 1, 3, 4 or 6", d,
                  (const char *)node->name);
   return contact;
 }

@@ -163,7 +163,7 @@ static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, cons
     mjcf->ground = *contact;
   } else if (mjcf->file.options->has_ground)
     report_warning(mjcf->file.diagnostics, line_of(contact->node),
-                   "a <geom> of type plane of the body '%s' touches nothing: expected %s", link->name,
+                   "a <geom> of type plane of the body '%s' touches nothing; expected %s", link->name,
                    is_of_world ? "one plane, which is the ground"
                                : "it in the <worldbody>, of which one is the ground");
 }

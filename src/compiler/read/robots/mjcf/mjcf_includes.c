@@ -65,8 +65,8 @@ static xmlDocPtr load(struct Inclusion *inclusion, const char *path, long line) 
 }
 
 /*
- * Sets the lines of copied nodes to those of the originals, as lines of their file; to that of the <include> if lines
- * are not noted.
+ * Gives copied nodes the lines of the originals in their own file. If lines are not noted, the copies get the line of
+ * the <include>.
  */
 static void set_lines(const struct Diagnostics *of_file, long include, xmlNodePtr copy, const xmlNode *original) {
   for (; copy != NULL && original != NULL; copy = copy->next, original = original->next) {
@@ -78,7 +78,7 @@ static void set_lines(const struct Diagnostics *of_file, long include, xmlNodePt
 
 static void insert_in(struct Inclusion *inclusion, xmlNodePtr parent);
 
-/* Inserts the elements of the file before the <include> and removes that. */
+/* Replaces the <include> by the elements of its file. */
 static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
   long line = inclusion->line > 0 ? inclusion->line : line_of(node);
   char *path = find_file(inclusion, node, line);

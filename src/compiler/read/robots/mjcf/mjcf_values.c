@@ -150,7 +150,7 @@ size_t mjcf_numbers(struct Mjcf *mjcf, xmlNodePtr node, const char *name, size_t
     return count;
   }
   char *amount = least == most ? format_text("%zu", most) : format_text("%zu to %zu", least, most);
-  report_error(mjcf->file.diagnostics, line_of(node), "%s=\"%.60s\" of <%s>; expected %s", name, text,
+  report_error(mjcf->file.diagnostics, line_of(node), "%s=\"%.60s\" of <%s> is not valid; expected %s", name, text,
                (const char *)node->name,
                most == 1 ? "a number such as 2, -0.5 or 1e-3" : format_text("%s numbers", amount));
   return 0;
