@@ -5,7 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* The looks of shapes, by what they show; each has a row in the table of struct LookStyle. */
+/* The looks of shapes, named after the parts that they show; each has a row in the table of struct LookStyle. */
 enum Look { GROUND, AXIS, SOLID, EDGE, LINK, ROPE, BAR, BASE, HOLE, PARTICLE, JOINT, BOX, SIGNAL, LOOK_COUNT };
 
 /*

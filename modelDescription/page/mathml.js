@@ -5,7 +5,7 @@
 // and powers are rewritten on one line, as a <math> element cannot contain a break. Each node is visited once.
 
 const MATH = '<math display="inline" displaystyle="true">', BREAK = `</math><wbr/>${MATH}`;
-const NARROW = 20; // letters of what is not broken: it fits on a phone
+const NARROW = 20; // letters of a part without breaks, which fits on a phone
 const NARROW_CASES = 28; // the same for cases, which would become if(c, a, b)
 const LONGEST = 3000; // characters of an equation; longer ones stay texts
 

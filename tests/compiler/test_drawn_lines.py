@@ -132,7 +132,7 @@ SPRINGS = """<system name="Springs">
 
 
 def test_springs_are_coils_without_lines(tmp_path):
-    """A <spring> is drawn beside what is guessed; where the author draws, it is not drawn twice. A body with equal moments is a ball."""
+    """A <spring> is drawn beside guessed lines; where the author draws lines, it is not drawn twice. A body with equal moments is a ball."""
     (spring,) = lines_of(written(tmp_path, SPRINGS.format("")))
     assert (spring["kind"], spring["from"], spring["to"], spring["guessed"]) == ("spring", "", "ball", "true")
     icon = ElementTree.parse(tmp_path / "fmi3" / "icon.svg").getroot()

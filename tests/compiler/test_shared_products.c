@@ -14,7 +14,10 @@ static size_t operations(const struct Expressions *e, const Node *nodes) {
   return operations;
 }
 
-/* Each case: three expressions, of which the first `leading` ones decide what is shared; operations before, after. */
+/*
+ * Each case: three expressions, of which the first `leading` ones decide which products are shared; operations before,
+ * after.
+ */
 static void test_operations(void **state) {
   (void)state;
   static const struct {

@@ -56,7 +56,7 @@ MODES = {"DigitalServo": (["u", "next", "count"], ["der(i)", "voltage"]), "HalfC
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("name", SAMPLED)
 def test_derivatives_by_start_values_of_modes(name, version):
-    """Against differences of Set and Get; what has a derivative is a dependency."""
+    """Against differences of Set and Get; each variable with a derivative is a dependency."""
     module = fmu if version == 2 else fmi3
     instance = in_initialization_mode(module, name)
     modes, unknowns = MODES[name]

@@ -16,7 +16,7 @@ char *fenced_factor(const char *text);
 char *product_text(const struct Atoms *atoms, double number, const struct Term *term, const char *const *texts,
                    const char *first);
 
-/* The order of atoms in products, by what they are: parameters first, accelerations last. */
+/* The order of atoms in products, by their kind: parameters first, accelerations last. */
 enum FactorRank {
   RANK_PARAMETER_SUM,
   RANK_PARAMETER,

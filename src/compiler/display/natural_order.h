@@ -1,6 +1,6 @@
 /*
- * The order of terms in a sum: accelerations, constraint forces, squares of velocities, velocities, coordinates with
- * what else is there, inputs. Terms that differ in parameters alone become one, whose coefficient is a sum of
+ * The order of terms in a sum: accelerations, constraint forces, squares of velocities, velocities, other terms with
+ * coordinates, inputs. Terms that differ in parameters alone become one, whose coefficient is a sum of
  * parameters: (m1 + m2)*l1^2. Terms with the same acceleration become one likewise.
  */
 #pragma once

@@ -60,7 +60,7 @@ static bool follows_second(const struct DerivativeNeed *need, const struct Varia
   return true;
 }
 
-/* Notes that a state moves a mass, so that what moves the state does work. */
+/* Notes that a state moves a mass, so that moving the state takes work. */
 static void note_moving_state(const struct DerivativeNeed *need, Node node) {
   struct Model *model = need->reader->model;
   model->prescribed.states_move |= graph_depends_on(model->graph, node, STATE);

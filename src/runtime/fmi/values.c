@@ -140,7 +140,7 @@ static enum Status reject_range(struct Instance *instance, const struct ScalarVa
 /* Relative error of values that importers compute: a few thousand rounding errors, as of tables and ramps. */
 static const double computed_error = 1e-12;
 
-/* Returns the scale of a variable: the largest of its limits, its start value and what an input was set to before. */
+/* Returns the scale of a variable: the largest of its limits, its start value and the earlier values of an input. */
 static double scale_of_variable(const struct Instance *instance, const struct ScalarVariable *variable) {
   double scale = fabs(variable->start);
   if (isfinite(variable->minimum)) scale = fmax(scale, fabs(variable->minimum));

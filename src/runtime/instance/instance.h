@@ -30,7 +30,7 @@ enum Phase {
 };
 
 /*
- * What has changed since the last step: nothing; state, inputs or parameters; modes and state by an event,
+ * The change since the last step: none; state, inputs or parameters; modes and state by an event,
  * consistently. CHANGED_COURSE restarts the solver without a value that was set: at the start, and where the
  * polynomials of inputs end.
  */

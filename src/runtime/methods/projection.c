@@ -72,7 +72,7 @@ static double size_of(const double *value, const double *state, size_t first) {
   return largest;
 }
 
-/* What is projected: coordinates or velocities, those of a step or of the start. */
+/* The projected quantity: coordinates or velocities, those of a step or of the start. */
 enum ProjectionTarget { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES };
 
 /* Evaluates change, residuals, pivots and slopes. False if M is singular or a value is not finite. */

@@ -20,7 +20,7 @@
 #include "evaluation/services.h"
 #include "instance/active_constraints.h"
 
-/* In units of the scales of velocities: what a projection may leave of a velocity at rest by rounding. */
+/* Largest velocity at rest after a projection, by rounding, in units of the scales of velocities. */
 static const double projected_rest = 1e-10;
 
 /*
@@ -68,7 +68,7 @@ static void move_nearby(struct Probe *probe) {
   probe->point.time += later;
 }
 
-/* True if the prescribed velocity may be at rest: it is 0, or what an integration to rest has left. */
+/* True if the prescribed velocity may be at rest: it is 0, or as small as the error of an integration. */
 static bool is_small(const struct Resolution *resolution, size_t number) {
   const struct RestingMetadata *resting = &resolution->switches->resting[number];
   size_t velocity = lagrangian.coordinate_count + resting->coordinate;

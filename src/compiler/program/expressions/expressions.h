@@ -42,7 +42,7 @@ struct Corrections {
 };
 
 /*
- * The expressions by what the generated functions compute. Directional derivatives are along the graph's seed symbols.
+ * The expressions that the generated functions compute. Directional derivatives are along the graph's seed symbols.
  */
 struct Expressions {
   const struct Model *model;
