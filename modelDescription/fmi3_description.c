@@ -10,7 +10,7 @@
 #include "common_elements.h"
 #include "interface/arrays.h"
 #include "model_structure.h"
-#include "quantities.h"
+#include "type_definitions.h"
 #include "xml_output.h"
 
 static void write_abilities(xmlTextWriterPtr writer, const struct Model *model) {

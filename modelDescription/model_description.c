@@ -6,7 +6,7 @@
 
 #include "common_elements.h"
 #include "model_structure.h"
-#include "quantities.h"
+#include "type_definitions.h"
 #include "xml_output.h"
 
 /* Writes SourceFiles. FMUs without SUNDIALS contain all their sources, as one C file. */

@@ -143,15 +143,16 @@ static void write_gravity(xmlTextWriterPtr writer, const struct Model *model) {
   xmlTextWriterEndElement(writer);
 }
 
-static void write_object(xmlTextWriterPtr writer, const char *name, const struct Samples *samples, size_t object) {
+static void write_object(xmlTextWriterPtr writer, const char *name, const struct SampledPositions *samples,
+                         size_t object) {
   if (samples->objects[object].name != NULL) write_attribute(writer, name, samples->objects[object].name);
 }
 
-static char *force_name(const struct Samples *samples, size_t constraint) {
+static char *force_name(const struct SampledPositions *samples, size_t constraint) {
   return constraint_force_name(&samples->model->constraints.items[constraint]);
 }
 
-static void write_rod(xmlTextWriterPtr writer, const struct Samples *samples, const struct Rod *rod) {
+static void write_rod(xmlTextWriterPtr writer, const struct SampledPositions *samples, const struct Rod *rod) {
   xmlTextWriterStartElement(writer, BAD_CAST "rod");
   write_object(writer, "from", samples, rod->from);
   write_object(writer, "to", samples, rod->to);
@@ -168,7 +169,7 @@ static void write_coordinate(xmlTextWriterPtr writer, const char *name, double c
   else write_rounded(writer, name, coordinate);
 }
 
-static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, const struct SceneJoint *joint,
+static void write_joint(xmlTextWriterPtr writer, const struct SampledPositions *samples, const struct SceneJoint *joint,
                         char **formulas) {
   xmlTextWriterStartElement(writer, BAD_CAST "joint");
   write_object(writer, "of", samples, joint->of);
@@ -185,7 +186,8 @@ static void write_joint(xmlTextWriterPtr writer, const struct Samples *samples, 
   xmlTextWriterEndElement(writer);
 }
 
-static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples, const struct SceneSurface *surface) {
+static void write_surface(xmlTextWriterPtr writer, const struct SampledPositions *samples,
+                          const struct SceneSurface *surface) {
   static const char *const normals[3] = {"nx", "ny", "nz"};
   xmlTextWriterStartElement(writer, BAD_CAST "surface");
   write_object(writer, "of", samples, surface->object);
@@ -198,7 +200,7 @@ static void write_surface(xmlTextWriterPtr writer, const struct Samples *samples
 }
 
 static void write_connections(xmlTextWriterPtr writer, const struct Model *model) {
-  struct Samples samples = take_samples(model, false, NULL);
+  struct SampledPositions samples = sample_positions(model, false, NULL);
   struct Connections connections = find_connections(&samples);
   char **formulas = joint_formulas(model, &connections);
   struct Surfaces surfaces = find_surfaces(&samples);
@@ -206,7 +208,7 @@ static void write_connections(xmlTextWriterPtr writer, const struct Model *model
   for (size_t i = 0; i < connections.joint_count; i++)
     write_joint(writer, &samples, &connections.joints[i], formulas + JOINT_COORDINATES * i);
   for (size_t i = 0; i < surfaces.count; i++) write_surface(writer, &samples, &surfaces.items[i]);
-  release_samples(&samples);
+  release_positions(&samples);
 }
 
 bool has_scene(const struct Model *model) {

@@ -2,7 +2,7 @@
 #ifndef FLANGE_DRAWING_H
 #define FLANGE_DRAWING_H
 
-#include "shapes.h"
+#include "picture_shapes.h"
 
 /* Returns a disk that fills a picture of PICTURE_SIZE, in pixels. */
 struct Drawing flange_drawing(void);

@@ -24,7 +24,7 @@ static double distance_to_line(struct PicturePoint point, struct PicturePoint fr
 }
 
 /* Returns the distance to the nearest segment of a shape; a polygon is closed. is_inside: for convex polygons. */
-static double distance_to_shape(const struct Shape *shape, struct PicturePoint point, bool *is_inside) {
+static double distance_to_shape(const struct PictureShape *shape, struct PicturePoint point, bool *is_inside) {
   double distance = INFINITY;
   bool has_left = false, has_right = false;
   size_t lines = shape->count == 1 || shape->is_filled ? shape->count : shape->count - 1;
@@ -40,7 +40,7 @@ static double distance_to_shape(const struct Shape *shape, struct PicturePoint p
 }
 
 /* Returns the share of a pixel that the shape covers, times its opacity. */
-static double coverage(const struct Shape *shape, struct PicturePoint point) {
+static double coverage(const struct PictureShape *shape, struct PicturePoint point) {
   const double scale = (double)SIDE / PICTURE_SIZE;
   const struct LookStyle *style = &looks[shape->look];
   bool is_polygon = shape->is_filled && shape->count > 1, is_inside;
@@ -58,9 +58,9 @@ static double clip(double coordinate) {
 }
 
 /* Paints a shape, within its bounding box. */
-static void paint_shape(unsigned char *image, const struct Shape *shape) {
+static void paint_shape(unsigned char *image, const struct PictureShape *shape) {
   const double scale = (double)SIDE / PICTURE_SIZE, width = looks[shape->look].width + 2.0;
-  struct Rectangle all = rectangle_of(&(struct Drawing){(struct Shape *)shape, 1});
+  struct Rectangle all = rectangle_of(&(struct Drawing){(struct PictureShape *)shape, 1});
   for (int row = (int)clip(scale * (all.least.up - width)); row < clip(scale * (all.most.up + width)); row++)
     for (int column = (int)clip(scale * (all.least.right - width)); column < clip(scale * (all.most.right + width));
          column++) {

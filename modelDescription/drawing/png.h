@@ -2,7 +2,7 @@
 #ifndef PNG_H
 #define PNG_H
 
-#include "shapes.h"
+#include "picture_shapes.h"
 
 /* Returns the bytes of the file, and their number in *length. */
 unsigned char *png_of(const struct Drawing *drawing, size_t *length);

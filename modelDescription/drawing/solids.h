@@ -3,7 +3,7 @@
 #define SOLIDS_H
 
 #include "model/model.h"
-#include "shapes.h"
+#include "picture_shapes.h"
 
 /* A parallel projection: the directions in space along the axes of the picture, of length 1. */
 struct View {

@@ -9,7 +9,7 @@ static void write_position(xmlTextWriterPtr writer, const char *name, double pix
   xmlTextWriterWriteFormatAttribute(writer, BAD_CAST name, "%.1f", pixels);
 }
 
-static void write_points(xmlTextWriterPtr writer, const struct Shape *shape) {
+static void write_points(xmlTextWriterPtr writer, const struct PictureShape *shape) {
   struct TextStream text;
   FILE *stream = open_text(&text);
   for (size_t i = 0; i < shape->count; i++)
@@ -17,7 +17,7 @@ static void write_points(xmlTextWriterPtr writer, const struct Shape *shape) {
   write_attribute(writer, "points", close_text(&text));
 }
 
-static void write_shape(xmlTextWriterPtr writer, const struct Shape *shape) {
+static void write_shape(xmlTextWriterPtr writer, const struct PictureShape *shape) {
   const struct LookStyle *style = &looks[shape->look];
   bool is_dot = shape->count == 1;
   xmlTextWriterStartElement(writer, BAD_CAST(is_dot ? "circle" : shape->is_filled ? "polygon" : "polyline"));

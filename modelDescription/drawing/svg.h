@@ -4,7 +4,7 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "shapes.h"
+#include "picture_shapes.h"
 
 /* Writes an <svg> element; the page's style colours the classes of the looks. */
 void write_sketch(xmlTextWriterPtr writer, const struct Drawing *drawing);

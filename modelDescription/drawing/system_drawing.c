@@ -15,7 +15,7 @@ enum { MOST_WAYS = 8, MOST_DOTS = 60 };
 
 /* The visible parts of the system at its start values. */
 struct VisibleParts {
-  struct Samples samples;
+  struct SampledPositions samples;
   struct Connections connections;
   struct Surfaces surfaces;
   double *values;      /* of all nodes, in SI units */
@@ -158,7 +158,7 @@ static void append_axes(struct Drawing *drawing, const struct VisibleParts *visi
 
 /* Appends the solids, rods and bars, and the lines from bodies to their joints; dots are drawn over them. */
 static void append_bodies(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
-  const struct Samples *samples = &visible->samples;
+  const struct SampledPositions *samples = &visible->samples;
   const struct Connections *connections = &visible->connections;
   for (size_t i = 0; i < model->mechanism.shape_count; i++)
     append_drawn_shape(drawing, &visible->view, model, &model->mechanism.shapes[i], visible->values);
@@ -186,7 +186,7 @@ static void append_pivot(struct Drawing *drawing, struct PicturePoint point) {
 
 /* Appends dots and joints; the origin last, on top. With lines, only dots of particles that have no shape. */
 static void append_points(struct Drawing *drawing, const struct VisibleParts *visible, const struct Model *model) {
-  const struct Samples *samples = &visible->samples;
+  const struct SampledPositions *samples = &visible->samples;
   bool is_guessed = !has_described_lines(&model->drawing);
   for (size_t i = samples->object_count; i-- > 1;) {
     const struct SceneObject *object = &samples->objects[i];
@@ -239,7 +239,7 @@ static void append_surfaces(struct Drawing *drawing, const struct VisibleParts *
 
 static void append_drawing(struct Drawing *drawing, const struct Drawing *other) {
   for (size_t i = 0; i < other->count; i++) {
-    const struct Shape *shape = &other->shapes[i];
+    const struct PictureShape *shape = &other->shapes[i];
     append_shape(drawing, shape->look, shape->is_filled, shape->points, shape->count);
   }
 }
@@ -265,7 +265,8 @@ static enum Plane plane_of(const struct VisibleParts *visible, const struct Mode
 
 static struct VisibleParts visible_parts_of(const struct Model *model) {
   struct Configurations everything = configurations_of(model, NULL);
-  struct VisibleParts visible = {.samples = take_samples(model, true, NULL), .values = values_at(&everything, NULL)};
+  struct VisibleParts visible = {.samples = sample_positions(model, true, NULL),
+                                 .values = values_at(&everything, NULL)};
   visible.connections = find_connections(&visible.samples);
   visible.surfaces = find_surfaces(&visible.samples);
   if (visible.values == NULL) visible.values = graph_evaluate(model->graph, start_values(model));
@@ -344,7 +345,7 @@ static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
   struct VisibleParts visible = visible_parts_of(model);
   bool has_drawn = has_described_lines(&model->drawing) && draw_lines(drawing, &visible, model);
   bool is_seen = has_drawn || draw_guesses(drawing, &visible, model);
-  release_samples(&visible.samples);
+  release_positions(&visible.samples);
   release(visible.values);
   release(visible.line_values);
   return is_seen && fit_drawing(drawing);

@@ -6,7 +6,7 @@
 #define SYSTEM_DRAWING_H
 
 #include "model/model.h"
-#include "shapes.h"
+#include "picture_shapes.h"
 
 /* Returns the drawing, in pixels of a picture of PICTURE_SIZE. */
 struct Drawing drawing_of(const struct Model *model);

@@ -4,7 +4,7 @@
 
 #include <libxml/tree.h>
 
-#include "drawing/shapes.h"
+#include "drawing/picture_shapes.h"
 #include "interface/summary.h"
 #include "program/program.h"
 

@@ -10,7 +10,7 @@
 #include <libxml/xmlwriter.h>
 
 #include "display/display.h"
-#include "drawing/shapes.h"
+#include "drawing/picture_shapes.h"
 #include "interface/summary.h"
 #include "program/program.h"
 

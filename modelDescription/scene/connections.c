@@ -24,7 +24,7 @@ enum { MOST_OBJECTS = 60 };
 /* Coefficients of constraints below NO_FORCE are rounding errors; rods shorter than NO_LENGTH, in m, are not drawn. */
 static const double NO_FORCE = 1e-6, NO_LENGTH = 1e-9;
 
-static double distance(const struct Samples *samples, size_t sample, size_t first, size_t second) {
+static double distance(const struct SampledPositions *samples, size_t sample, size_t first, size_t second) {
   const double *values = samples->values[sample];
   double sum = 0.0;
   for (int axis = 0; axis < 3; axis++) {
@@ -34,11 +34,11 @@ static double distance(const struct Samples *samples, size_t sample, size_t firs
   return sqrt(sum);
 }
 
-static double constraint_value(const struct Samples *samples, size_t sample, size_t k) {
+static double constraint_value(const struct SampledPositions *samples, size_t sample, size_t k) {
   return samples->values[sample][samples->model->constraints.items[samples->constraints[k]].node];
 }
 
-static bool moves(const struct Samples *samples, size_t object) {
+static bool moves(const struct SampledPositions *samples, size_t object) {
   for (int axis = 0; axis < 3; axis++)
     if (samples->values[1][samples->objects[object].position[axis]] !=
         samples->values[0][samples->objects[object].position[axis]])
@@ -56,7 +56,7 @@ static bool is_norm(const struct Model *model, size_t constraint) {
 }
 
 /* True if distance^power is a constant plus multiples of constraints. */
-static bool is_rod(const struct Samples *samples, int power, struct Rod *rod) {
+static bool is_rod(const struct SampledPositions *samples, int power, struct Rod *rod) {
   size_t columns = 1 + samples->constraint_count;
   struct LeastSquares system = least_squares_create(samples->count, columns);
   double *solution = allocate(columns, sizeof *solution);
@@ -110,7 +110,7 @@ static void keep_shortest(struct Connections *connections, size_t object_count) 
   connections->rod_count = kept;
 }
 
-static void try_rod(struct Connections *connections, const struct Samples *samples, size_t from, size_t to) {
+static void try_rod(struct Connections *connections, const struct SampledPositions *samples, size_t from, size_t to) {
   struct Rod rod = {.from = from, .to = to};
   if (!moves(samples, from) && !moves(samples, to)) return;
   if (!is_rod(samples, 2, &rod) && !is_rod(samples, 1, &rod)) return;
@@ -122,7 +122,8 @@ static void try_rod(struct Connections *connections, const struct Samples *sampl
  * Fills the equations of a joint. Unknowns: its position on each of the two objects, then the coefficients of the
  * constraints along x and y.
  */
-static void fill_joint(const struct Samples *samples, const struct SceneJoint *joint, struct LeastSquares *system) {
+static void fill_joint(const struct SampledPositions *samples, const struct SceneJoint *joint,
+                       struct LeastSquares *system) {
   for (size_t k = 0; k < samples->count; k++)
     for (int axis = 0; axis < 2; axis++) {
       double *row = least_squares_row(system, 2 * k + (size_t)axis);
@@ -144,7 +145,7 @@ static void fill_joint(const struct Samples *samples, const struct SceneJoint *j
  * With r + A c = 0 for the distance r of both points and two constraints c, constraint forces l do the work l^T A^-1
  * dr, so that the force on the first object is F = A^-T l. Forces are found for exactly two constraints only.
  */
-static void set_forces(const struct Samples *samples, const double *multiples, struct SceneJoint *joint) {
+static void set_forces(const struct SampledPositions *samples, const double *multiples, struct SceneJoint *joint) {
   double a[FORCES][2] = {{0}};
   size_t count = 0;
   for (size_t c = 0; c < samples->constraint_count; c++) {
@@ -163,7 +164,7 @@ static void set_forces(const struct Samples *samples, const double *multiples, s
   joint->along[1][1] = a[0][0] / determinant;
 }
 
-bool find_joint(const struct Samples *samples, struct SceneJoint *joint) {
+bool find_joint(const struct SampledPositions *samples, struct SceneJoint *joint) {
   size_t columns = 4 + 2 * samples->constraint_count;
   struct LeastSquares system = least_squares_create(2 * samples->count, columns);
   double *solution = allocate(columns, sizeof *solution);
@@ -177,7 +178,7 @@ bool find_joint(const struct Samples *samples, struct SceneJoint *joint) {
   return true;
 }
 
-static void try_joint(struct Connections *connections, const struct Samples *samples, size_t of, size_t with) {
+static void try_joint(struct Connections *connections, const struct SampledPositions *samples, size_t of, size_t with) {
   struct SceneJoint joint = {.of = of, .with = with};
   if (!find_joint(samples, &joint)) return;
   connections->joints = make_room(connections->joints, connections->joint_count, sizeof *connections->joints);
@@ -185,13 +186,13 @@ static void try_joint(struct Connections *connections, const struct Samples *sam
 }
 
 /* True if the pair is tested. Objects in a frame are connected only with that. */
-static bool are_compared(const struct Samples *samples, size_t first, size_t second) {
+static bool are_compared(const struct SampledPositions *samples, size_t first, size_t second) {
   const struct SceneObject *a = &samples->objects[first], *b = &samples->objects[second];
   if (a->frame != 0 || b->frame != 0) return b->frame == first || (a->frame == second && second != 0);
   return samples->object_count <= MOST_OBJECTS || first == 0 || second == first + 1;
 }
 
-struct Connections find_connections(const struct Samples *samples) {
+struct Connections find_connections(const struct SampledPositions *samples) {
   struct Connections connections = {.rod_count = 0};
   for (size_t i = 0; i < samples->object_count; i++)
     for (size_t j = i + 1; j < samples->object_count; j++) {

@@ -1,7 +1,7 @@
 /* Finds rods and joints between objects, kept by formulas or by constraints. */
 #pragma once
 
-#include "samples.h"
+#include "sampled_positions.h"
 
 /* Constraint forces in a planar joint, and coordinates of its point on both objects. */
 enum { FORCES = 2, JOINT_COORDINATES = 4 };
@@ -34,7 +34,7 @@ struct Connections {
 };
 
 /* Finds the shared point of joint->of, a planar body, and joint->with, and its forces. False if there is none. */
-bool find_joint(const struct Samples *samples, struct SceneJoint *joint);
+bool find_joint(const struct SampledPositions *samples, struct SceneJoint *joint);
 
 /* Finds all rods and joints. */
-struct Connections find_connections(const struct Samples *samples);
+struct Connections find_connections(const struct SampledPositions *samples);

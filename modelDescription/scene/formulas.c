@@ -25,7 +25,7 @@ static double change_of(const struct Model *model, size_t parameter) {
 /* Returns the coordinates of all joints with changed parameters; NULL if a joint does not exist then. */
 static double *coordinates_with(const struct Model *model, const struct Connections *connections,
                                 const double *changes) {
-  struct Samples samples = take_samples(model, false, changes);
+  struct SampledPositions samples = sample_positions(model, false, changes);
   double *coordinates = allocate(JOINT_COORDINATES * connections->joint_count, sizeof *coordinates);
   for (size_t i = 0; i < connections->joint_count && coordinates != NULL; i++) {
     struct SceneJoint joint = {.of = connections->joints[i].of, .with = connections->joints[i].with};
@@ -33,7 +33,7 @@ static double *coordinates_with(const struct Model *model, const struct Connecti
     for (int k = 0; k < JOINT_COORDINATES && coordinates != NULL; k++)
       coordinates[JOINT_COORDINATES * i + (size_t)k] = joint.coordinates[k];
   }
-  release_samples(&samples);
+  release_positions(&samples);
   return coordinates;
 }
 

@@ -16,7 +16,7 @@ static void append(struct Surfaces *surfaces, struct SceneSurface surface) {
 }
 
 /* True if gap = normal . position + offset for all samples; sets the plane. */
-static bool is_plane(const struct Samples *samples, Node gap, struct SceneSurface *surface) {
+static bool is_plane(const struct SampledPositions *samples, Node gap, struct SceneSurface *surface) {
   struct LeastSquares system = least_squares_create(samples->count, 4);
   double solution[4];
   for (size_t k = 0; k < samples->count; k++) {
@@ -42,7 +42,7 @@ struct Limit {
   double slope;
 };
 
-static bool is_of_coordinate(const struct Samples *samples, Node gap, struct Limit *limit) {
+static bool is_of_coordinate(const struct SampledPositions *samples, Node gap, struct Limit *limit) {
   const struct VariableList *coordinates = &samples->model->coordinates;
   for (size_t i = 0; i < coordinates->count; i++) {
     struct LeastSquares system = least_squares_create(samples->count, 2);
@@ -92,7 +92,7 @@ static bool is_end(const struct SceneObject *object, const double *at, const dou
 }
 
 /* Adds the stop of a coordinate, at the first object that the coordinate moves. */
-static void add_stop(struct Surfaces *surfaces, const struct Samples *samples,
+static void add_stop(struct Surfaces *surfaces, const struct SampledPositions *samples,
                      const struct Configurations *configurations, Node gap) {
   const double little = 1e-4;
   struct Limit limit;
@@ -110,7 +110,7 @@ static void add_stop(struct Surfaces *surfaces, const struct Samples *samples,
 }
 
 /* Prepares the evaluation of positions and gaps only, since each stop needs several evaluations. */
-static struct Configurations configurations_with_stops(const struct Samples *samples) {
+static struct Configurations configurations_with_stops(const struct SampledPositions *samples) {
   const struct Switches *switches = &samples->model->switches;
   struct NodeList wanted = {.count = 0};
   for (size_t i = 0; i < switches->contact_count; i++) append_node(&wanted, switches->contacts[i].gap);
@@ -129,7 +129,7 @@ static bool draws_shapes(const struct Mechanism *mechanism) {
   return draws;
 }
 
-struct Surfaces find_surfaces(const struct Samples *samples) {
+struct Surfaces find_surfaces(const struct SampledPositions *samples) {
   struct Surfaces surfaces = {.count = 0};
   const struct Switches *switches = &samples->model->switches;
   if (switches->contact_count == 0) return surfaces;

@@ -1,7 +1,7 @@
 /* Finds the surfaces that objects hit: planes of contacts, and stops of coordinates. */
 #pragma once
 
-#include "samples.h"
+#include "sampled_positions.h"
 
 /* A plane that an object hits. The normal has length 1. */
 struct SceneSurface {
@@ -17,4 +17,4 @@ struct Surfaces {
 };
 
 /* Returns at most one surface for each contact. */
-struct Surfaces find_surfaces(const struct Samples *samples);
+struct Surfaces find_surfaces(const struct SampledPositions *samples);

@@ -17,7 +17,7 @@
 #include "program/program.h"
 #include "read/names/words.h"
 #include "read/reader.h"
-#include "read/context/values.h"
+#include "read/context/value_texts.h"
 #include "read/sensitivities.h"
 #include "read/xml/schema.h"
 

@@ -7,7 +7,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "display/addition_theorems.h"
-#include "display/factors.h"
+#include "display/products.h"
 #include "display/natural_order.h"
 
 /* Longest text of a part, in characters; with a longer part, the whole is printed as by formula.h. */

@@ -6,7 +6,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "display/factors.h"
+#include "display/products.h"
 
 enum TermClass { OF_ACCELERATION, QUADRATIC_IN_VELOCITIES, LINEAR_IN_VELOCITIES, WITHOUT_VELOCITIES, OF_INPUTS };
 

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "base/paths.h"
-#include "read/context/values.h"
+#include "read/context/value_texts.h"
 #include "read/elements/elements.h"
 #include "read/expressions/number_units.h"
 #include "read/expressions/parser.h"

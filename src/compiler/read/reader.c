@@ -24,7 +24,7 @@
 #include "read/context/attributes.h"
 #include "read/context/includes.h"
 #include "read/context/variables.h"
-#include "read/elements/resolution.h"
+#include "read/elements/definition_order.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "read/expansion.h"

@@ -11,7 +11,7 @@
  */
 #pragma once
 
-#include "mechanics/mass_matrix/factors.h"
+#include "mechanics/mass_matrix/symbolic_factors.h"
 #include "mechanics/mass_matrix/kinematic_trees.h"
 
 /* A link with its factors. */

@@ -8,7 +8,7 @@
 #include "mechanics/energies.h"
 #include "read/context/function_reader.h"
 #include "read/context/includes.h"
-#include "read/context/values.h"
+#include "read/context/value_texts.h"
 #include "read/context/variables.h"
 #include "read/elements/constraint_reader.h"
 #include "read/elements/named_expressions.h"

@@ -1,4 +1,4 @@
-#include "quantities.h"
+#include "type_definitions.h"
 
 #include <string.h>
 

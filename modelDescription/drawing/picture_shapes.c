@@ -1,4 +1,4 @@
-#include "shapes.h"
+#include "picture_shapes.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -18,7 +18,7 @@ const struct LookStyle looks[LOOK_COUNT] = {
 
 void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct PicturePoint *points,
                   size_t count) {
-  struct Shape shape = {look, is_filled, allocate(count, sizeof *points), count};
+  struct PictureShape shape = {look, is_filled, allocate(count, sizeof *points), count};
   for (size_t i = 0; i < count; i++) shape.points[i] = points[i];
   drawing->shapes = make_room(drawing->shapes, drawing->count, sizeof *drawing->shapes);
   drawing->shapes[drawing->count++] = shape;

@@ -17,7 +17,7 @@ struct SceneObject {
 };
 
 /* Samples of one model. values[0] is the start. Indices of objects refer to objects[]. */
-struct Samples {
+struct SampledPositions {
   const struct Model *model;
   struct SceneObject *objects; /* the first one is the base */
   size_t object_count;
@@ -32,7 +32,7 @@ struct Samples {
  * Takes the samples; the first one is the start. is_still: time and inputs keep their start values. parameters:
  * changes of the start values of all parameters; NULL for none.
  */
-struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters);
+struct SampledPositions sample_positions(const struct Model *model, bool is_still, const double *parameters);
 
 /* Frees the values, which take much memory for large systems. */
-void release_samples(struct Samples *samples);
+void release_positions(struct SampledPositions *samples);

@@ -1,4 +1,4 @@
-#include "read/context/values.h"
+#include "read/context/value_texts.h"
 
 #include <ctype.h>
 #include <math.h>

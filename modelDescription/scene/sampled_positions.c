@@ -1,4 +1,4 @@
-#include "samples.h"
+#include "sampled_positions.h"
 
 #include <math.h>
 #include <string.h>
@@ -22,7 +22,7 @@ static Node component(const struct Model *model, const char *name, const char *a
 }
 
 /* Appends an object with its position. A body outside frames has its own components, where given. */
-static void append_object(struct Samples *samples, struct SceneObject object) {
+static void append_object(struct SampledPositions *samples, struct SceneObject object) {
   const struct Body *body = object.body;
   bool is_free = body != NULL && !body->is_in_frame;
   for (int axis = 0; axis < 3 && object.name != NULL; axis++)
@@ -33,14 +33,14 @@ static void append_object(struct Samples *samples, struct SceneObject object) {
 }
 
 /* Returns the index of the object of a frame, which may be a body; 0 for the base. */
-static size_t object_of_frame(const struct Samples *samples, size_t frame) {
+static size_t object_of_frame(const struct SampledPositions *samples, size_t frame) {
   size_t object = samples->object_count;
   while (frame != BASE && --object > 0)
     if (strcmp(samples->objects[object].name, samples->model->mechanism.frames[frame].name) == 0) return object;
   return 0;
 }
 
-static void find_objects(struct Samples *samples) {
+static void find_objects(struct SampledPositions *samples) {
   const struct Mechanism *mechanism = &samples->model->mechanism;
   append_object(samples, (struct SceneObject){.name = NULL});
   for (size_t i = BASE + 1; i < mechanism->frame_count; i++)
@@ -61,7 +61,7 @@ static void find_objects(struct Samples *samples) {
       samples->objects[first_body + i].frame = object_of_frame(samples, mechanism->bodies[i].frame);
 }
 
-static void find_constraints(struct Samples *samples) {
+static void find_constraints(struct SampledPositions *samples) {
   const struct VariableList *all = &samples->model->constraints;
   for (size_t i = 0; i < all->count && samples->constraint_count <= MOST_CONSTRAINTS; i++) {
     if (!holds_positions(samples->model, i)) continue;
@@ -93,7 +93,7 @@ static Node later(Node first, Node second) {
 }
 
 /* Returns the last node that is evaluated; the equations derived from it are far more. */
-static Node last_node(const struct Samples *samples) {
+static Node last_node(const struct SampledPositions *samples) {
   const struct Model *model = samples->model;
   Node last = ZERO;
   for (size_t i = 0; i < samples->object_count; i++) {
@@ -107,8 +107,8 @@ static Node last_node(const struct Samples *samples) {
   return last;
 }
 
-struct Samples take_samples(const struct Model *model, bool is_still, const double *parameters) {
-  struct Samples samples = {.model = model};
+struct SampledPositions sample_positions(const struct Model *model, bool is_still, const double *parameters) {
+  struct SampledPositions samples = {.model = model};
   find_objects(&samples);
   find_constraints(&samples);
   samples.count = FEWEST + 2 * samples.constraint_count;
@@ -121,7 +121,7 @@ struct Samples take_samples(const struct Model *model, bool is_still, const doub
   return samples;
 }
 
-void release_samples(struct Samples *samples) {
+void release_positions(struct SampledPositions *samples) {
   for (size_t k = 0; k < samples->count; k++) release(samples->values[k]);
   samples->count = 0;
 }

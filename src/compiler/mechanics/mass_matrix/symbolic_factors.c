@@ -1,4 +1,4 @@
-#include "mechanics/mass_matrix/factors.h"
+#include "mechanics/mass_matrix/symbolic_factors.h"
 
 #include "algebra/simplify.h"
 #include "base/memory.h"

@@ -1,4 +1,4 @@
-#include "read/elements/resolution.h"
+#include "read/elements/definition_order.h"
 
 #include "base/memory.h"
 #include "read/elements/named_expressions.h"

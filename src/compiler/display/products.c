@@ -1,4 +1,4 @@
-#include "display/factors.h"
+#include "display/products.h"
 
 #include <ctype.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* The shapes of a drawing: lines, dots and filled polygons, in drawing order. */
-#ifndef SHAPES_H
-#define SHAPES_H
+#ifndef PICTURE_SHAPES_H
+#define PICTURE_SHAPES_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,7 +30,7 @@ struct PicturePoint {
 };
 
 /* A dot if it has one point. */
-struct Shape {
+struct PictureShape {
   enum Look look;
   bool is_filled; /* a convex polygon, else a polyline */
   struct PicturePoint *points;
@@ -39,7 +39,7 @@ struct Shape {
 
 /* Shapes from the back to the front. */
 struct Drawing {
-  struct Shape *shapes;
+  struct PictureShape *shapes;
   size_t count;
 };
 
