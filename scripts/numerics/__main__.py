@@ -14,7 +14,7 @@ from html_page import bullets, folded, page, paragraphs, table, write_csv
 from numerics import footprint, validation
 from numerics.failures import failure
 from numerics.mechanisms import comparison as mechanisms
-from numerics.overview import Run, overview
+from numerics.overview import MethodRun, overview
 from numerics.plots import SWITCHING_STYLES, energy_plot, events_plot, legend, mechanism_legend, mechanism_plot
 from numerics.plots import stiff_legend, stiff_plot, work_precision_plot
 from numerics.space import accelerations
@@ -33,13 +33,13 @@ from scripts.whole_files import write_whole
 FOLDER = ROOT / "build" / "report"
 
 
-class Section(NamedTuple):
+class ReportSection(NamedTuple):
     """A section of the report."""
 
     summary: list  # for the head of the page: sentences, and pairs (sentence, list of items)
     content: str  # HTML
     wrong: int = 0  # number of wrong results of FMUs
-    runs: list = []  # overview.Run, for the comparison in the head of the page
+    runs: list = []  # overview.MethodRun, for the comparison in the head of the page
 
 
 def machine_section(quick, progress):
@@ -53,7 +53,7 @@ def machine_section(quick, progress):
             versions.append(f"{package}: not installed here")
     rows = [("machine", f"{model}, {os.cpu_count()} cores, {platform.system()} {platform.machine()}"),
             ("Python", platform.python_version()), *(("package", v) for v in versions)]  # fmt: skip
-    return Section([], table(["", ""], rows))
+    return ReportSection([], table(["", ""], rows))
 
 
 def error_section(quick, progress):
@@ -64,8 +64,8 @@ def error_section(quick, progress):
     plots = '<div class="plots">' + "".join(work_precision_plot(samples, name) for name in systems) + "</div>"
     content = paragraphs([*failed, *sentences, "Left is loose, right is accurate; low is fast."]) + legend() + plots
     ends = {name: work_precision.SCENARIOS[name][1] for name in systems}
-    runs = [Run("Smooth systems", s.system, s.method, s.seconds, s.error_at_end) for s in samples if s.step in (0.0, ends[s.system])]
-    return Section([*work_precision.summary(samples), *missing_peers(samples)], content + ratio_tables(samples), runs=runs)
+    runs = [MethodRun("Smooth systems", s.system, s.method, s.seconds, s.error_at_end) for s in samples if s.step in (0.0, ends[s.system])]
+    return ReportSection([*work_precision.summary(samples), *missing_peers(samples)], content + ratio_tables(samples), runs=runs)
 
 
 def stability_rows(progress):
@@ -87,7 +87,7 @@ def stability_section(quick, progress):
     counts = {verdict: sum(row[3] == verdict for row in rows) for verdict in ("right", "rejected", "wrong")}
     text = (f"{len(rows)} cases: {counts['right']} right, {counts['rejected']} rejected with a message, {counts['wrong']} wrong. Each has a bound "
             "on its error and on the evaluations of the equations of motion; the same table is a test.")  # fmt: skip
-    return Section([text], paragraphs([text]) + table(header, coloured), counts["wrong"])
+    return ReportSection([text], paragraphs([text]) + table(header, coloured), counts["wrong"])
 
 
 def energy_section(quick, progress):
@@ -102,7 +102,7 @@ def energy_section(quick, progress):
             progress(f"energy, {name}")
         plots.append(energy_plot(name, curves, end))
     write_csv(FOLDER / "energy.csv", ["system", "method", "tolerance", "time", "drift"], rows)
-    return Section([], '<div class="plots">' + "".join(plots) + "</div>")
+    return ReportSection([], '<div class="plots">' + "".join(plots) + "</div>")
 
 
 def left_out_section(quick, progress):
@@ -110,7 +110,7 @@ def left_out_section(quick, progress):
               "instantiate and free [µs]", "exported symbols", "left out, since the system does not need it"]  # fmt: skip
     rows = footprint.rows()
     write_csv(FOLDER / "left_out.csv", header, rows)
-    return Section([], table(header, rows))
+    return ReportSection([], table(header, rows))
 
 
 def stiff_section(quick, progress):
@@ -126,8 +126,8 @@ def stiff_section(quick, progress):
     plots = "".join(paragraphs([failures[problem.name]]) if problem.name in failures else stiff_plot(samples, problem)
                     for problem in stiff.problems(quick))  # fmt: skip
     content = folded("in words", paragraphs([*sentences, *missing_peers(samples, stiff.PEERS), text])) + stiff_legend(stiff.PEERS)
-    runs = [Run("Stiff systems", s.problem, s.method, s.seconds, s.error) for s in samples if s.way == "one step" or s.method in stiff.PEERS]
-    return Section(sentences, content + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows), runs=runs)
+    runs = [MethodRun("Stiff systems", s.problem, s.method, s.seconds, s.error) for s in samples if s.way == "one step" or s.method in stiff.PEERS]
+    return ReportSection(sentences, content + f'<div class="plots">{plots}</div>' + table(stiff.HEADER, rows), runs=runs)
 
 
 def mechanisms_section(quick, progress):
@@ -146,12 +146,12 @@ def mechanisms_section(quick, progress):
         points = {method: mechanisms.points_of(samples, problem.system, method, measure) for method in mechanisms.METHODS}
         plots += mechanism_plot(problem.title, mechanisms.text_of(problem, measure), points)
         names = {"taylor": "FMU"}  # radau has no column, since it is not another program
-        runs += [Run("Mechanisms", problem.title, names.get(method, method), *pair) for method, pairs in points.items() for pair in pairs]
+        runs += [MethodRun("Mechanisms", problem.title, names.get(method, method), *pair) for method, pairs in points.items() for pair in pairs]
     level, times, ratios = slice(0, len(mechanisms.LEVEL)), mechanisms.TIMES, mechanisms.FASTEST
     tables = [table(mechanisms.HEADER[level] + mechanisms.HEADER[times], [row[level] + row[times] for row in rows]),
               table(mechanisms.HEADER[level][:4] + mechanisms.HEADER[ratios], [row[level][:4] + row[ratios] for row in rows])]  # fmt: skip
     content = folded("in words", paragraphs([*sentences, *absent, *mechanisms.NOTES])) + mechanism_legend() + f'<div class="plots">{plots}</div>'
-    return Section(sentences, content + "".join(tables) + accelerations_part(quick, progress), runs=runs)
+    return ReportSection(sentences, content + "".join(tables) + accelerations_part(quick, progress), runs=runs)
 
 
 def switching_section(quick, progress):
@@ -166,13 +166,13 @@ def switching_section(quick, progress):
     for problem in switching.PROBLEMS:
         points = {method: switching.points_of(samples, problem, method) for method in switching.METHODS}
         plots += mechanism_plot(problem.title, "largest error of a position", points, SWITCHING_STYLES) if any(points.values()) else ""
-        runs += [Run("Switching", problem.title, method, *pair) for method, pairs in points.items() for pair in pairs]
+        runs += [MethodRun("Switching", problem.title, method, *pair) for method, pairs in points.items() for pair in pairs]
     for problem in switching.GROWING:
         points = {method: [(count, s.error) for count, s in counted if (s.problem, s.method) == (problem.name, method)] for method in switching.METHODS}
         title = f"{problem.title}, tolerance {switching.TOLERANCE:g}"
         plots += events_plot(title, points, SWITCHING_STYLES) if any(points.values()) else ""
     first = paragraphs(failures) + folded("in words", paragraphs([*absent, *switching.NOTES])) + mechanism_legend(SWITCHING_STYLES)
-    return Section(sentences, first + f'<div class="plots">{plots}</div>' + table(switching.HEADER, rows) + table(switching.COUNTED, counted_rows),
+    return ReportSection(sentences, first + f'<div class="plots">{plots}</div>' + table(switching.HEADER, rows) + table(switching.COUNTED, counted_rows),
                    runs=runs)  # fmt: skip
 
 
@@ -182,7 +182,7 @@ def touching_section(quick, progress):
     rows = touching.rows(samples)
     write_csv(FOLDER / "touching_times.csv", touching.HEADER, rows)
     absent = [f"Not installed here: {', '.join(sorted(missing))}."] if missing else []
-    return Section([], paragraphs([*absent, *failures]) + folded("in words", paragraphs(touching.NOTES)) + table(touching.HEADER, rows))
+    return ReportSection([], paragraphs([*absent, *failures]) + folded("in words", paragraphs(touching.NOTES)) + table(touching.HEADER, rows))
 
 
 def stepped(quick):
@@ -199,7 +199,7 @@ def steps_section(quick, progress):
     text = (f"Single communication steps of 1 ms. Of each step the fastest of {realtime.RUNS} runs counts, which leaves out what else the machine did, but for \"as seen\". "
             "Allocations are those of all steps; calls of the operating system are counted where strace is installed. scripts/realtime measures longer. "
             "FMPy's Euler and CVode, which are the methods of Reference-FMUs' fmusim too, take SimplePendulum in model exchange, with FMPy's loop in Python in their times.")  # fmt: skip
-    return Section([], paragraphs([text]) + table(header, rows))
+    return ReportSection([], paragraphs([text]) + table(header, rows))
 
 
 def accelerations_part(quick, progress):
@@ -219,7 +219,7 @@ def references_section(quick, progress):
     write_csv(FOLDER / "references.csv", header, rows)
     text = ("The reference of every system is a Taylor series of SymPy's equations with 30 digits in FLINT's arithmetic, which shares no "
             "code with the FMUs; its local error is 1e-20.")  # fmt: skip
-    return Section([], paragraphs([text]) + table(header, rows))
+    return ReportSection([], paragraphs([text]) + table(header, rows))
 
 
 def validation_section(quick, progress):
@@ -236,7 +236,7 @@ def validation_section(quick, progress):
     sentence = f"{len(rows)} motions with a known solution: {len(rows) - len(wrong)} within {validation.LARGEST:g} times the tolerance{but}."
     text = (f"Each FMU as shipped, at its own tolerance, in {validation.POINTS} communication steps. The error is the largest of all compared variables at all "
             "communication points, relative for values above 1. The time is that of the whole run.")  # fmt: skip
-    return Section([sentence], paragraphs([sentence, *failures, text]) + table(validation.HEADER, rows), len(wrong))
+    return ReportSection([sentence], paragraphs([sentence, *failures, text]) + table(validation.HEADER, rows), len(wrong))
 
 
 def settings_of_peers(samples):
@@ -288,7 +288,7 @@ def attempt(title, section, quick, progress):
         return section(quick, progress)
     except Exception as error:
         sentence = failure(f"the section '{title}'", error)
-        return Section([sentence], paragraphs([sentence]))
+        return ReportSection([sentence], paragraphs([sentence]))
 
 
 def write_page(sections):

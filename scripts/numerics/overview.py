@@ -11,7 +11,7 @@ COLOURS = {"SUNDIALS, same FMU": "#2a6f97", "SciPy": "#e09f3e", "FMPy CVode": "#
 NEVER = math.inf
 
 
-class Run(NamedTuple):
+class MethodRun(NamedTuple):
     """Time and error of a method on a problem."""
 
     section: str

@@ -137,7 +137,7 @@ class Observer:
         self.state = self.plant.a @ self.state + self.plant.b[:, 0] * force
 
 
-class Run(NamedTuple):
+class ClosedLoopRun(NamedTuple):
     """A closed-loop run, with a row for each period."""
 
     times: np.ndarray  # s
@@ -147,7 +147,7 @@ class Run(NamedTuple):
 
 
 def run(unpacked, plant, controller, task=BALANCED, duration=5.0, seed=1):
-    """Run the nonlinear FMU in closed loop with a controller; return the Run."""
+    """Run the nonlinear FMU in closed loop with a controller; return the ClosedLoopRun."""
     description = fmpy.read_model_description(str(unpacked))
     references = {variable.name: variable.valueReference for variable in description.modelVariables}
     cart = FMU2Slave(guid=description.guid, unzipDirectory=str(unpacked), modelIdentifier=description.coSimulation.modelIdentifier, instanceName="cart")
@@ -173,7 +173,7 @@ def run(unpacked, plant, controller, task=BALANCED, duration=5.0, seed=1):
         cart.doStep(k * PERIOD, PERIOD)
     cart.terminate()
     cart.freeInstance()
-    return Run(PERIOD * np.arange(len(rows)), np.array(rows), np.array(forces), np.array(seconds))
+    return ClosedLoopRun(PERIOD * np.arange(len(rows)), np.array(rows), np.array(forces), np.array(seconds))
 
 
 CONTROLLERS = {"LQR": Regulator, "MPC": Predictor}

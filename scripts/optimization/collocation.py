@@ -37,7 +37,7 @@ class Task(NamedTuple):
     has_hessian: bool  # True for a Hessian by differences of the FMU's derivatives; False for IPOPT's limited-memory BFGS, cheaper with many states
 
 
-class Motion(NamedTuple):
+class OptimalMotion(NamedTuple):
     """A time-optimal motion."""
 
     times: np.ndarray  # of the intervals' boundaries, in s
@@ -68,7 +68,7 @@ def _guess(task, taus):
 
 
 def least_time(unpacked, task):
-    """Return the time-optimal Motion, a local minimum that IPOPT finds."""
+    """Return the OptimalMotion, a local minimum that IPOPT finds."""
     taus = casadi.collocation_points(task.points, "radau")
     slope_matrix, end_row, _ = casadi.collocation_coeff(taus)
     slopes = slopes_of(unpacked, task).map(task.intervals * task.points)
@@ -101,7 +101,7 @@ def least_time(unpacked, task):
         status = problem.stats()["return_status"].replace("_", " ")
         raise Problem(f"IPOPT finds no motion of {task.fmu} between the two states: {status}; expected other parameters, or another start") from None
     times = np.linspace(0.0, solution.value(duration), task.intervals + 1)
-    return Motion(times, np.transpose(solution.value(starts)), np.transpose(np.atleast_2d(solution.value(inputs))), solution.stats()["iter_count"])
+    return OptimalMotion(times, np.transpose(solution.value(starts)), np.transpose(np.atleast_2d(solution.value(inputs))), solution.stats()["iter_count"])
 
 
 def play_back(unpacked, task, motion):

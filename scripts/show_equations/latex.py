@@ -4,7 +4,7 @@ import ast
 import re
 
 from .expression import Expression, is_cut, operands, terms, without_sign
-from .listing import Equation, Step
+from .listing import Equation, DerivationStep
 
 GREEK = "alpha beta gamma delta epsilon zeta eta theta kappa lambda mu nu xi pi rho sigma tau phi chi psi omega Gamma Delta Theta Lambda Xi Pi Sigma Phi Psi Omega".split()
 UPRIGHT = ("sin", "cos", "tan", "sinh", "cosh", "tanh")  # functions of a name without parentheses
@@ -175,7 +175,7 @@ def latex_of(listing):
     for heading, entries in listing.sections.items():
         lines += ["", rf"\subsection*{{{plain(heading)}}}"]
         for entry in entries:
-            if isinstance(entry, Step):
+            if isinstance(entry, DerivationStep):
                 lines += ["", rf"\subsubsection*{{{plain(entry.title)}}}"]
             elif not isinstance(entry, Equation):
                 lines += ["", plain(entry.text)]

@@ -22,7 +22,7 @@ class Text(NamedTuple):
     text: str
 
 
-class Step(NamedTuple):
+class DerivationStep(NamedTuple):
     title: str
 
 
@@ -33,7 +33,7 @@ class Listing(NamedTuple):
     variables: dict  # lists of Variable by their kind: parameter, input, coordinate, velocity, state
     multipliers: dict  # constraint by the name of its force
     switches: dict  # (contact or friction, its mode) by the name of the constraint
-    sections: dict  # lists of Equation, Text and Step by heading
+    sections: dict  # lists of Equation, Text and DerivationStep by heading
 
 
 def listing_of(text):
@@ -57,7 +57,7 @@ def listing_of(text):
         elif kind == "line":
             section.append(Equation("", *fields))
         else:
-            section.append({"text": Text, "step": Step}[kind](fields[0]))
+            section.append({"text": Text, "step": DerivationStep}[kind](fields[0]))
     return Listing(*system, variables, multipliers, switches, sections)
 
 

@@ -3,7 +3,7 @@
 import re
 import textwrap
 
-from .listing import Equation, Step
+from .listing import Equation, DerivationStep
 
 WIDTH = 110
 
@@ -34,7 +34,7 @@ def text_of(listing):
         for entry in entries:
             if isinstance(entry, Equation):
                 lines += equation_lines(entry)
-            elif isinstance(entry, Step):
+            elif isinstance(entry, DerivationStep):
                 lines += ["", entry.title]
             else:
                 lines.append(wrapped(entry.text, further=""))

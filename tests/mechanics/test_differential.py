@@ -21,7 +21,7 @@ from differential.reference import Reference
 from differential.skeletons import coordinate, body
 from differential.switches import Contact, Event, Friction, Switches
 from differential.system import Action, Plan, System, Table
-from references import Motion
+from references import ExactMotion
 
 SEED = 644
 COUNT = int(os.environ.get("RANDOM_SYSTEMS", "23"))  # the smallest count that has all families of equations, with this seed
@@ -206,7 +206,7 @@ def test_reference_agrees_with_taylor_series(tmp_path):
     compared = 0
     for number in range(400):
         system = generate(SEED, number)
-        # Motion supports neither kinks nor changed parameters, and its atan2 has one branch.
+        # ExactMotion supports neither kinks nor changed parameters, and its atan2 has one branch.
         if not system.families <= SMOOTH | {f for f in system.families if f.startswith("skeleton")}:
             continue
         if system.work or "atan2" in system.xml() or any(action.parameters for action in system.plan.actions):
@@ -216,7 +216,7 @@ def test_reference_agrees_with_taylor_series(tmp_path):
         system.plan = Plan(0.0, 0.5, [Action()], 1e-10)
         derivation = Derivation(system)
         values = dict(zip(system.positions + system.velocities, system.start)) | system.parameters
-        exact = Motion(derivation.mechanics, values, 30).trajectory([0.5])[0]
+        exact = ExactMotion(derivation.mechanics, values, 30).trajectory([0.5])[0]
         ours = Reference(derivation, folder).trajectory(7, 1e-16, 0.5)[-1]
         np.testing.assert_allclose(ours, exact, rtol=1e-14, atol=1e-14)
         compared += 1

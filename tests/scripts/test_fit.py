@@ -79,9 +79,9 @@ def test_derivatives_of_a_state_that_is_no_output(lagrange_fmu):
 
 def test_derivatives_of_a_stiff_motion(lagrange_fmu, monkeypatch):
     """The motion is integrated by Radau's method; an explicit one would take 400,000 steps."""
-    from lagrange_fmu.sensitivity import Motion
+    from lagrange_fmu.sensitivity import DifferentiableMotion
 
-    allow_calls(monkeypatch, Motion, "rates", 20000)
+    allow_calls(monkeypatch, DifferentiableMotion, "rates", 20000)
     at = {"m": 2.0, "k": 50.0, "d": 1e6, "x": 0.3}
     found = lagrange_fmu.sensitivities(fmu.archive("Stiff"), ["x"], list(at), [0.5, 2.0])
     for i, t in enumerate(found.time):
@@ -379,10 +379,10 @@ def test_friction_without_derivatives(lagrange_fmu, start):
 
 def test_best_values_are_kept(lagrange_fmu, monkeypatch):
     """A failing trial is a rejected step; Ctrl-C ends the search with the best values so far."""
-    from lagrange_fmu.sensitivity import Motion
+    from lagrange_fmu.sensitivity import DifferentiableMotion
     from lagrange_fmu.variational import SteppedMotion
 
-    follow, count = Motion.over, []
+    follow, count = DifferentiableMotion.over, []
 
     def over(self, *arguments):
         count.append(1)
@@ -395,7 +395,7 @@ def test_best_values_are_kept(lagrange_fmu, monkeypatch):
 
     data = measured(np.random.default_rng(5), {"m": 2.0, "k": 61.0, "d": 0.8, "x": 0.3})
     with monkeypatch.context() as patch:
-        patch.setattr(Motion, "over", over)
+        patch.setattr(DifferentiableMotion, "over", over)
         patch.setattr(SteppedMotion, "over", fail)
         found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"])
     assert found.is_finished and found.values["k"] == pytest.approx(61, abs=0.3) and "1 of " in str(found)
@@ -407,7 +407,7 @@ def test_best_values_are_kept(lagrange_fmu, monkeypatch):
         return follow(self, *arguments)
 
     count.clear()
-    monkeypatch.setattr(Motion, "over", stop)
+    monkeypatch.setattr(DifferentiableMotion, "over", stop)
     found = lagrange_fmu.fit(fmu.archive("Oscillator"), data, ["k", "d"])
     assert not found.is_finished and "stopped after 3 motions" in repr(found) and 50 < found.values["k"] < 70
 

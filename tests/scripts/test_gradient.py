@@ -51,9 +51,9 @@ def test_of_a_state_that_is_no_output(lagrange_fmu, integral):  # noqa: F811
 
 def test_of_a_stiff_motion(lagrange_fmu, monkeypatch):  # noqa: F811
     """Forward and backward integration take steps that an explicit method could not."""
-    from lagrange_fmu.adjoint import AdjointMotion, Motion
+    from lagrange_fmu.adjoint import AdjointMotion, DifferentiableMotion
 
-    for owner in (AdjointMotion, Motion):
+    for owner in (AdjointMotion, DifferentiableMotion):
         allow_calls(monkeypatch, owner, "rates", 20000)
     at = {"m": 2.0, "k": 50.0, "d": 1e6, "x": 0.3}
     found = lagrange_fmu.gradient(archive("Stiff"), "x", list(at), 2)

@@ -18,7 +18,7 @@ from numerics.stiff import peers as stiff_peers
 from numerics.stiff import problems as stiff_problems
 from numerics.stiff.collocation import trajectory
 from numerics.stiff.comparison import Sample
-from numerics.stiff.problems import DEFINITIONS, PROBLEMS, Problem, damped as damped_pendulum, elastic, right_states
+from numerics.stiff.problems import DEFINITIONS, PROBLEMS, StiffProblem, damped as damped_pendulum, elastic, right_states
 from numerics.work_precision.compiled import odeint
 from numerics.work_precision.scenarios import CLOSED_FORMS, states_of, times_of, values_of
 from rope import START, accelerations
@@ -74,7 +74,7 @@ def test_definitions(name, open_fmu):
 
 def test_a_small_problem(built):
     """Every way of communication reaches the reference, including changing inputs."""
-    problem = Problem("small", "VanDerPol", 5.0, 100, dict(mu=20.0), ("F", 5.0))
+    problem = StiffProblem("small", "VanDerPol", 5.0, 100, dict(mu=20.0), ("F", 5.0))
     for way in problem.ways:
         _, _, difference = right_states(problem, way)
         assert difference < 1e-12

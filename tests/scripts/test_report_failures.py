@@ -5,13 +5,13 @@ import csv
 import pytest
 
 from numerics import __main__ as report
-from numerics.__main__ import Section
+from numerics.__main__ import ReportSection
 from numerics.mechanisms import comparison as mechanisms
 from numerics.mechanisms.problems import PROBLEMS as MECHANISMS
 from numerics.stiff import comparison as stiff
 from numerics.stiff import problems as stiff_problems
 from numerics.stiff.comparison import Sample
-from numerics.stiff.problems import Problem
+from numerics.stiff.problems import StiffProblem
 from numerics.work_precision import comparison as work_precision
 
 pytestmark = pytest.mark.release
@@ -29,8 +29,8 @@ def fail(*arguments, **names):
 
 def test_a_section_that_fails(folder, monkeypatch, capsys):
     """The page has the sections before and after the failing one, and a warning; the exit status is 0."""
-    monkeypatch.setattr(report, "SECTIONS", [("First", lambda *words: Section(["fine"], "<p>content one</p>")), ("Second", fail),
-                                             ("Third", lambda *words: Section([("levels", ["item"])], "<p>content three</p>"))])  # fmt: skip
+    monkeypatch.setattr(report, "SECTIONS", [("First", lambda *words: ReportSection(["fine"], "<p>content one</p>")), ("Second", fail),
+                                             ("Third", lambda *words: ReportSection([("levels", ["item"])], "<p>content three</p>"))])  # fmt: skip
     assert report.main(["--quick"]) == 0
     page = (folder / "index.html").read_text()
     assert all(text in page for text in ("content one", "content three", "<li>item</li>", "the section &#x27;Second&#x27;: it did not come to the end"))
@@ -40,20 +40,20 @@ def test_a_section_that_fails(folder, monkeypatch, capsys):
 def test_the_page_grows(folder, monkeypatch):
     """The page on disk has each section before the next one starts."""
     pages = []
-    monkeypatch.setattr(report, "SECTIONS", [("First", lambda *words: Section([], "<p>content one</p>")),
-                                             ("Second", lambda *words: pages.append((folder / "index.html").read_text()) or Section([], ""))])  # fmt: skip
+    monkeypatch.setattr(report, "SECTIONS", [("First", lambda *words: ReportSection([], "<p>content one</p>")),
+                                             ("Second", lambda *words: pages.append((folder / "index.html").read_text()) or ReportSection([], ""))])  # fmt: skip
     report.main(["--quick"])
     assert "content one" in pages[0]
 
 
 def test_wrong_results(folder, monkeypatch, capsys):
-    monkeypatch.setattr(report, "SECTIONS", [("Cases", lambda *words: Section([], "", 2))])
+    monkeypatch.setattr(report, "SECTIONS", [("Cases", lambda *words: ReportSection([], "", 2))])
     assert report.main([]) == 1
     assert "2 results are wrong" in capsys.readouterr().err
 
 
 def small(name, end=1.0):
-    return Problem(name, name, end, 100)
+    return StiffProblem(name, name, end, 100)
 
 
 def test_a_stiff_problem_without_a_reference(folder, monkeypatch, capsys):
@@ -93,7 +93,7 @@ def test_methods_that_give_up(folder, monkeypatch):
 def test_a_solver_that_does_not_come_to_the_end_of_a_reference(monkeypatch, tmp_path):
     monkeypatch.setattr(stiff_problems, "REFERENCES", tmp_path)
     monkeypatch.setattr(stiff_problems, "step", lambda *words, **names: None)
-    monkeypatch.setattr(Problem, "all_values", {})
+    monkeypatch.setattr(StiffProblem, "all_values", {})
     with pytest.raises(ArithmeticError, match="radau did not come to the end of its reference, at a tolerance of 1e-11, within 200 s"):
         stiff_problems.right_states(small("Rope"), "one step")
 

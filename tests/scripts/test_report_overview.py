@@ -6,21 +6,21 @@ import re
 import matplotlib.pyplot as plt
 
 from html_page import INK, page, svg, with_tips
-from numerics.overview import NEVER, Run, cells_of, overview, shade
+from numerics.overview import NEVER, MethodRun, cells_of, overview, shade
 
 RUNS = [
-    Run("Smooth", "A", "shipped", 1e-3, 1e-5),  # not accurate enough
-    Run("Smooth", "A", "shipped", 2e-3, 1e-7),
-    Run("Smooth", "A", "shipped", 1e-2, 1e-12),
-    Run("Smooth", "A", "SciPy DOP853", 5e-2, 1e-8),
-    Run("Smooth", "A", "SciPy LSODA", 4e-2, 1e-6),
-    Run("Smooth", "A", "SciPy Radau", 1e-9, math.nan),
-    Run("Smooth", "A", "heyoka", 1e-3, 1e-9),
-    Run("Smooth", "A", "MuJoCo RK4", 1e-3, 1e-3),
-    Run("Smooth", "A", "taylor", 1e-6, 1e-15),  # the FMU with another method is no peer
-    Run("Stiff", "B", "auto", 1.0, 1e-2),
-    Run("Stiff", "B", "exudyn generalized-alpha", 1.0, 1e-8),
-    Run("Stiff", "C", "SciPy Radau", 1.0, 1e-8),  # no other run to compare with
+    MethodRun("Smooth", "A", "shipped", 1e-3, 1e-5),  # not accurate enough
+    MethodRun("Smooth", "A", "shipped", 2e-3, 1e-7),
+    MethodRun("Smooth", "A", "shipped", 1e-2, 1e-12),
+    MethodRun("Smooth", "A", "SciPy DOP853", 5e-2, 1e-8),
+    MethodRun("Smooth", "A", "SciPy LSODA", 4e-2, 1e-6),
+    MethodRun("Smooth", "A", "SciPy Radau", 1e-9, math.nan),
+    MethodRun("Smooth", "A", "heyoka", 1e-3, 1e-9),
+    MethodRun("Smooth", "A", "MuJoCo RK4", 1e-3, 1e-3),
+    MethodRun("Smooth", "A", "taylor", 1e-6, 1e-15),  # the FMU with another method is no peer
+    MethodRun("Stiff", "B", "auto", 1.0, 1e-2),
+    MethodRun("Stiff", "B", "exudyn generalized-alpha", 1.0, 1e-8),
+    MethodRun("Stiff", "C", "SciPy Radau", 1.0, 1e-8),  # no other run to compare with
 ]
 
 

@@ -77,9 +77,9 @@ def motion_through_events(name, of, times, start, monkeypatch, ways):
     """Values and derivatives at the times. `ways` receives the times from which SciPy continues where the series cannot."""
     from lagrange_fmu.event_motion import EventMotion
     from lagrange_fmu.model_exchange import opened
-    from lagrange_fmu.sensitivity import Motion
+    from lagrange_fmu.sensitivity import DifferentiableMotion
 
-    by, continue_to = SWITCHED[name][1], Motion.continue_to
+    by, continue_to = SWITCHED[name][1], DifferentiableMotion.continue_to
     monkeypatch.setattr(EventMotion, "continue_to", lambda self, begin, *words: ways.append(begin) or continue_to(self, begin, *words))
     with opened(archive_of(BUILD / "variational_switched", name), start) as point, opened(archive_of(BUILD / f"variational_{name}", name, 3), start, by=by, stops_at_events=True) as point.in_series:
         return EventMotion(point, of, by, 1e-11).over(np.array(times))
@@ -229,10 +229,10 @@ def test_flat_positions(lagrange_fmu):  # noqa: F811
     """The motion through a flat position is an error: SciPy's steps became tiny there, and its states wrong afterwards."""
     from lagrange_fmu.model_exchange import opened
     from lagrange_fmu.problem import Problem
-    from lagrange_fmu.sensitivity import Motion
+    from lagrange_fmu.sensitivity import DifferentiableMotion
 
     with pytest.raises(Problem, match="the constraints become singular, and der.nu"), opened(archive_of(BUILD / "variational_switched", "Flat"), {}) as point:
-        Motion(point, ["theta[1]"], ["g"], 1e-10).over(np.array([0.0, 1.0]))
+        DifferentiableMotion(point, ["theta[1]"], ["g"], 1e-10).over(np.array([0.0, 1.0]))
     with pytest.raises(Problem, match=r"'loopX\[\d\]' is closest to singular, .*; expected an earlier end"):
         motion("Flat", ["theta[1]"], ["g"], [0.0, 1.0])
 

@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 
 import fmu
 from closed_forms import kepler, pendulum_angle, pericentre_velocity, turning_pendulum_angle
-from references import Motion
+from references import ExactMotion
 from systems_in_sympy import system
 
 TOLERANCES = [1e-6, 1e-9]
@@ -221,7 +221,7 @@ REFERENCES = {
 @functools.cache
 def reference(name, end):
     definition = system(name)
-    return Motion(definition, fmu.start_values(name) | REFERENCES[name], 30).trajectory([end])[0]
+    return ExactMotion(definition, fmu.start_values(name) | REFERENCES[name], 30).trajectory([end])[0]
 
 
 def error_of(name, tolerance, open_fmu):

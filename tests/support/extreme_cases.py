@@ -22,7 +22,7 @@ from closed_forms import (
     turning_pendulum_angle,
 )
 from numerics.stiff.collocation import Collocation, extended_right_side
-from references import Motion
+from references import ExactMotion
 from systems_in_sympy import system
 
 PI = np.pi
@@ -188,7 +188,7 @@ def reference_error(run):
     definition = system(run.case.system)
     values = {s.name: 0.0 for s in definition.arguments} | start_values(run.case)
     states = [s.name for s in [*definition.q, *definition.v]]
-    exact = Motion(definition, values, 30).trajectory([run.time[-1]])[0]
+    exact = ExactMotion(definition, values, 30).trajectory([run.time[-1]])[0]
     ours = np.array([run[name][-1] for name in states])
     return worst((ours - exact) / np.maximum(1, np.abs(exact)))
 

@@ -81,7 +81,7 @@ def coefficient(series, k):
     return arb(series) if k == 0 else arb(0)
 
 
-class Motion:
+class ExactMotion:
     """Motion of a system of systems_in_sympy from values by symbol name, as trajectory() or coefficients()."""
 
     def __init__(self, definition, values, digits=40):
@@ -148,7 +148,7 @@ class Motion:
 
 def exact_series(definition, values, order):
     """Taylor coefficients of the states to 50 digits, as an array of doubles."""
-    motion = Motion(definition, {s.name: v for s, v in values.items()}, 50)
+    motion = ExactMotion(definition, {s.name: v for s, v in values.items()}, 50)
     start_time = next(v for s, v in values.items() if s.name == "time")
     rows = motion.coefficients(start_time, motion.start, order)
     return np.array([[float(c) for c in row] for row in rows])

@@ -72,7 +72,7 @@ class Mechanism:
     model: object  # Planar, or Spatial of space/problems.py; None if the other programs cannot express it
     steps: list  # numbers of fixed steps, multiples of POINTS
     at_end: bool = False  # True if the reference is known at the end only
-    from_bodies: Callable | None = None  # function of rows of (x, y, angle), or of a Motion in space, that returns the compared quantities
+    from_bodies: Callable | None = None  # function of rows of (x, y, angle), or of LinkMotions in space, that returns the compared quantities
     programs: tuple = ("exudyn", "MuJoCo")  # programs that can express it
     quick: bool = True  # True if the quick report contains it
 

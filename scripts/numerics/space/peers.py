@@ -5,7 +5,7 @@ import numpy as np
 from numerics.mechanisms import peers as mechanism_peers
 from numerics.mechanisms.peers import vector
 from numerics.mechanisms.problems import GROUND
-from numerics.space.problems import Motion
+from numerics.space.problems import LinkMotions
 
 # 1 for each constrained translation along, and rotation about, three axes, of which the third is the joint's axis.
 CONSTRAINED = {"hinge": (1, 1, 1, 1, 1, 0), "slide": (1, 1, 0, 1, 1, 1), "ball": (1, 1, 1, 0, 0, 0)}
@@ -56,7 +56,7 @@ class Exudyn(mechanism_peers.Exudyn):
     def recorded(self, points):
         stored = [[self.system.GetSensorStoredData(sensor)[-points:, 1:] for sensor in of_body] for of_body in self.sensors]
         centres, rotations, velocities, angular_velocities = (np.stack([of_body[i] for of_body in stored], axis=1) for i in range(4))
-        return Motion(centres, rotations.reshape(*rotations.shape[:2], 3, 3), velocities, angular_velocities)
+        return LinkMotions(centres, rotations.reshape(*rotations.shape[:2], 3, 3), velocities, angular_velocities)
 
     def measured(self, points):
         motion = self.recorded(points)
@@ -79,13 +79,13 @@ class MuJoCo(mechanism_peers.MuJoCo):
             self.data.qvel[first : first + len(rate)] = rate
 
     def state_of(self, data):
-        """Return the energy and the Motion."""
+        """Return the energy and the LinkMotions."""
         spins, rows = np.zeros(6), []
         for number in self.numbers:
             self.library.mj_objectVelocity(self.mujoco, data, self.library.mjtObj.mjOBJ_XBODY, number, spins, 1)
             axes = data.xmat[number].reshape(3, 3).copy()
             rows.append((data.xpos[number].copy(), axes, axes @ spins[3:], spins[:3].copy()))
-        motion = Motion(*(np.array([part]) for part in zip(*rows)))
+        motion = LinkMotions(*(np.array([part]) for part in zip(*rows)))
         return float(self.model.energy(motion)[0]), motion
 
 

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 from closed_forms import free_body_velocity, top_cosine
 from fmu import start_values
 from numerics.mechanisms.problems import GRAVITY, GROUND, Mechanism
-from numerics.stiff.problems import Problem, right_states
+from numerics.stiff.problems import StiffProblem, right_states
 
 
 @dataclass
@@ -51,7 +51,7 @@ class Closing:
     constrained: tuple  # 1 for each constrained translation and rotation, without redundant constraints; see CONSTRAINED of peers.py
 
 
-class Motion(NamedTuple):
+class LinkMotions(NamedTuple):
     """The motion of all links (second index) at several times (first index)."""
 
     centres: np.ndarray  # centres of mass
@@ -70,7 +70,7 @@ class Spatial:
     closings: list = field(default_factory=list)
 
     def energy(self, motion):
-        """Return the energies of a Motion, without those of springs and drives."""
+        """Return the energies of LinkMotions, without those of springs and drives."""
         energies = 0.0
         for i, link in enumerate(self.links):
             velocity, angular_velocity = motion.velocities[:, i], motion.angular_velocities[:, i]
@@ -80,7 +80,7 @@ class Spatial:
 
     def start(self):
         rows = lambda name: np.array([[getattr(link, name) for link in self.links]], float)
-        return Motion(rows("centre"), np.array([[np.eye(3)] * len(self.links)]), rows("velocity"), rows("angular_velocity"))
+        return LinkMotions(rows("centre"), np.array([[np.eye(3)] * len(self.links)]), rows("velocity"), rows("angular_velocity"))
 
     def start_energy(self):
         return float(self.energy(self.start())[0])
@@ -168,7 +168,7 @@ def free_velocities(times):
 
 def slider_heights(times):
     """Return the slider's heights, by collocation of SymPy's equations (stiff/problems.py)."""
-    problem = Problem("FlyballGovernor", "FlyballGovernor", times[-1], len(times))
+    problem = StiffProblem("FlyballGovernor", "FlyballGovernor", times[-1], len(times))
     return right_states(problem, "one step")[0][:, [problem.states.index("s")]]
 
 

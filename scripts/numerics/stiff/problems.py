@@ -49,7 +49,7 @@ DEFINITIONS = {"VanDerPol": van_der_pol, "StiffGovernor": flyball_governor}
 
 
 @dataclass
-class Problem:
+class StiffProblem:
     """A stiff problem."""
 
     name: str
@@ -95,27 +95,27 @@ class Problem:
 def elastic(k, ratio):
     values = dict(m=1.0, k=k, c=2 * ratio * float(np.sqrt(k)))
     name = f"ElasticPendulum, k = {k:g}, damping ratio {ratio:g}"
-    return Problem(name, "ElasticPendulum", 5.0, 500, values, tightest=1e-12 if k < 1e8 else 1e-10)
+    return StiffProblem(name, "ElasticPendulum", 5.0, 500, values, tightest=1e-12 if k < 1e8 else 1e-10)
 
 
 def damped(b):
     """Return the damped pendulum, over the time in which it creeps down."""
-    return Problem(f"DampedPendulum, b = {b:g}", "DampedPendulum", round(b / 9.81), 200, dict(b=b), ("tau", 5.0))
+    return StiffProblem(f"DampedPendulum, b = {b:g}", "DampedPendulum", round(b / 9.81), 200, dict(b=b), ("tau", 5.0))
 
 
 def relaxation(mu):
     """Return van der Pol's oscillator, over two of its periods, (3 - 2 log 2) mu each."""
-    return Problem(f"VanDerPol, mu = {mu:g}", "VanDerPol", 3.2 * mu, 200, dict(mu=mu), ("F", 0.1))
+    return StiffProblem(f"VanDerPol, mu = {mu:g}", "VanDerPol", 3.2 * mu, 200, dict(mu=mu), ("F", 0.1))
 
 
 PROBLEMS = [
     *(elastic(k, ratio) for k in (1e4, 1e6, 1e8, 1e10) for ratio in (0.01, 0.1, 1.0, 10.0)),
     *map(damped, (1e2, 1e4, 1e6, 1e8)),
     *map(relaxation, (1e2, 1e4, 1e6)),
-    Problem("StiffGovernor", "StiffGovernor", 10.0, 200, input=("tau", 5.0)),
+    StiffProblem("StiffGovernor", "StiffGovernor", 10.0, 200, input=("tau", 5.0)),
 ]
 if (ROOT / "fmu" / "Rope").exists():
-    PROBLEMS.append(Problem("Rope", "Rope", 2.0, 200, tightest=1e-10))
+    PROBLEMS.append(StiffProblem("Rope", "Rope", 2.0, 200, tightest=1e-10))
 QUICK = [replace(elastic(1e6, 1.0), steps=200), damped(1e6), relaxation(1e2)]
 
 

@@ -25,7 +25,7 @@ class Phase:
 
 
 @dataclass
-class Switching:
+class SwitchingSystem:
     """A system with events, and its motion in closed form."""
 
     system: str  # name of the FMU
@@ -234,15 +234,15 @@ def pendulum_end(values, count):
     return (2 * count - BEFORE) * quarter(values, mpmath.sin(mpmath.mpf(values["theta"]) / 2))
 
 
-BALL = Switching("BouncingBall", "ball that bounces without loss", dict(e=1.0), 10.0, ["h"], ball_heights, ball_end, ball_phases, ball_body,
+BALL = SwitchingSystem("BouncingBall", "ball that bounces without loss", dict(e=1.0), 10.0, ["h"], ball_heights, ball_end, ball_phases, ball_body,
                  ("SciPy", "heyoka", "MuJoCo"), "e = 1")  # fmt: skip
 RESTING_BALL = replace(BALL, title="ball that bounces until it rests", values=dict(e=0.8), end=5.0, end_of=None, label="e = 0.8")
-PENDULUM = Switching("HardStopPendulum", "pendulum that hits a stop", {}, 10.0, ["theta"], pendulum_angles, None, pendulum_phases,
+PENDULUM = SwitchingSystem("HardStopPendulum", "pendulum that hits a stop", {}, 10.0, ["theta"], pendulum_angles, None, pendulum_phases,
                      pendulum_body, ("SciPy", "heyoka", "MuJoCo"))  # fmt: skip
 LOSSLESS_PENDULUM = replace(PENDULUM, title="pendulum that hits a stop without loss", values=dict(e=1.0), end_of=pendulum_end, label="e = 1")
-BLOCK = Switching("StickSlip", "block that sticks and slips on a belt", {}, 60.0, ["x"], block_positions, block_end, block_phases,
+BLOCK = SwitchingSystem("StickSlip", "block that sticks and slips on a belt", {}, 60.0, ["x"], block_positions, block_end, block_phases,
                   methods=("SciPy", "heyoka"))  # fmt: skip
-CRADLE = Switching("NewtonsCradle", "Newton's cradle of five balls", {}, 10.0, [f"theta[{i}]" for i in range(1, 6)], cradle_angles, cradle_end)
+CRADLE = SwitchingSystem("NewtonsCradle", "Newton's cradle of five balls", {}, 10.0, [f"theta[{i}]" for i in range(1, 6)], cradle_angles, cradle_end)
 
 PROBLEMS = [BALL, RESTING_BALL, PENDULUM, BLOCK, CRADLE]
 GROWING = [BALL, LOSSLESS_PENDULUM, BLOCK, CRADLE]  # followed for more and more events

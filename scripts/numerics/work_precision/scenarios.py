@@ -9,7 +9,7 @@ import numpy as np
 from closed_forms import kepler, pendulum_angle, pericentre_velocity
 from fmu import ROOT, start_values
 from numerics.driver import POINTS
-from references import Motion
+from references import ExactMotion
 from systems_in_sympy import system
 
 # Start values other than the FMU's, and the end in s, which is early for chaotic systems.
@@ -55,7 +55,7 @@ def reference(name):
     path = ROOT / "build" / "report" / "references" / f"{name}-{key}.npy"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        np.save(path, Motion(system(name), values, 30).trajectory(times))
+        np.save(path, ExactMotion(system(name), values, 30).trajectory(times))
     return np.load(path)
 
 
@@ -122,7 +122,7 @@ def check_of_reference(name):
         columns, values = exact(name, values_of(name), times_of(name))
         indices = [states_of(name).index(column) for column in columns]
         return text, np.max(np.abs(reference(name)[:, indices] - values) / np.maximum(1, np.abs(values)))
-    last = Motion(system(name), values_of(name), 36).trajectory(times_of(name)[-1:])[0]
+    last = ExactMotion(system(name), values_of(name), 36).trajectory(times_of(name)[-1:])[0]
     return "series with 6 digits more, at the end", error_at_end(name, last)
 
 

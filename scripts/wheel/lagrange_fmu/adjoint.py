@@ -17,7 +17,7 @@ from .experiment import Experiment, check_noise
 from .model_exchange import opened
 from .problem import Problem
 from .quantities import numbers_of
-from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
+from .sensitivity import DifferentiableMotion, acting_of, check_names, check_tolerance, start_slopes
 from .stepping import Steps
 from .variables import some_names
 
@@ -53,7 +53,7 @@ class Jump:
     by_acting: np.ndarray  # parameters x n
 
 
-class RecordedMotion(Motion):
+class RecordedMotion(DifferentiableMotion):
     """A motion that records its phases and jumps, so that the adjoint equation can follow it back."""
 
     def __init__(self, point, of, acting, tolerance):

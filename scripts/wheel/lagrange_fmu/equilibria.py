@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from .linearization import Linearization, Switching, linearization_at, tangents
+from .linearization import Linearization, SwitchesEverywhere, linearization_at, tangents
 from .model_exchange import opened
 from .problem import Problem
 from .quantities import numbers_of
@@ -109,7 +109,7 @@ class _Search:
         point, count = self.point, len(self.point.states)
         try:
             basis = tangents(point, values[:count]) if count else np.empty((0, 0))
-        except Switching:
+        except SwitchesEverywhere:
             basis = np.eye(count)
         self.go_to(values)
         names = [*point.states, *self.vary]
@@ -254,7 +254,7 @@ def equilibrium(system, guess, hold, vary):
         try:
             linear = linearization_at(point)
             eigenvalues, stability = stability_of(_scaled(linear, point.nominals))
-        except Switching:
+        except SwitchesEverywhere:
             search.go_to(values)
         own = dict(zip(point.states, values[:count])) | dict(zip(point.inputs, point.read(point.inputs))) | dict(zip(vary, values[count:]))
         found = own | {name: value for name, value in point.values.items() if name not in point.states}

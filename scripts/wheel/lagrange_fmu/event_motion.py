@@ -11,7 +11,7 @@ from fmpy.fmi1 import FMICallException
 from .model_exchange import along
 from .problem import Problem
 from .saltation import CROSSING_DELAY, Saltation
-from .sensitivity import Motion, as_arrays
+from .sensitivity import DifferentiableMotion, as_arrays
 
 CHECKED = 1e-6  # relative tolerance to which both FMUs agree after an event
 NEGLIGIBLE = 1e-9  # delay, relative to the flight before the event, that needs no extrapolation
@@ -91,8 +91,8 @@ class Series:
         self.model.enterContinuousTimeMode()
 
 
-class EventMotion(Motion):
-    """A Motion in co-simulation as far as possible; its base class takes over from the time at which co-simulation fails."""
+class EventMotion(DifferentiableMotion):
+    """A DifferentiableMotion in co-simulation as far as possible; its base class takes over from the time at which co-simulation fails."""
 
     def __init__(self, point, of, by, tolerance):
         super().__init__(point, of, by, tolerance)

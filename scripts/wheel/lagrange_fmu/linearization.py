@@ -71,7 +71,7 @@ class Linearization(NamedTuple):
         return responses.step(self, of, by, times)
 
 
-class Switching(Problem):
+class SwitchesEverywhere(Problem):
     """Raised at a point next to which modes switch in every direction, so that it has no linearization."""
 
 
@@ -131,7 +131,7 @@ def tangents(point, at):
         if projection is not None:
             left, singular, _ = np.linalg.svd(projection)
             return left[:, : np.count_nonzero(singular > 0.5)]
-    raise Switching(f"{point.name} has no linearization at this point: near it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
+    raise SwitchesEverywhere(f"{point.name} has no linearization at this point: near it, {problem}; expected a point whose contacts are clearly open or closed by a force, and whose frictions are within their limits")
 
 
 def independent(directions, shares):

@@ -72,7 +72,7 @@ class Bode(Responses):
 
 
 @dataclass(frozen=True, eq=False)
-class Step(Responses):
+class StepResponses(Responses):
     """The response to a unit step of an input at the time 0, as the change of the outputs at the `time` in s."""
 
     time: np.ndarray
@@ -209,4 +209,4 @@ def step(linear, of, by, times):
             known[length] = exponential(whole * length)
         state = known[length] @ state
         values.append(linear.C[rows] @ state[:n] + linear.D[np.ix_(rows, columns)])
-    return Step(np.array(values), outputs, inputs, _title("response to a unit step", linear), grid)
+    return StepResponses(np.array(values), outputs, inputs, _title("response to a unit step", linear), grid)

@@ -81,7 +81,7 @@ def acting_of(point, by):
     return [[] if name in point.states else [point.references[name]] for name in by]
 
 
-class Motion:
+class DifferentiableMotion:
     """
     A motion of the variables `of` of an FMU, with its derivatives by the names `by`.
 

@@ -21,7 +21,7 @@ from .model_exchange import along, opened, lagc_options
 from .models import Slave2
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import Motion, acting_of, check_names, check_tolerance, start_slopes
+from .sensitivity import DifferentiableMotion, acting_of, check_names, check_tolerance, start_slopes
 
 CHECKED = 1e-6  # relative tolerance of the comparison with directional derivatives at the start
 DIFFERENCE = 1e-4  # first step of differences, relative to the value
@@ -83,13 +83,13 @@ def followed(system, values, by):
 
 
 def motion(point, of, by, tolerance):
-    """Return the motion with derivatives that suits the Point: a SeriesMotion, an EventMotion or a Motion."""
-    kind = SeriesMotion if isinstance(point.model, Slave2) else EventMotion if point.in_series is not None else Motion
+    """Return the motion with derivatives that suits the Point: a SeriesMotion, an EventMotion or a DifferentiableMotion."""
+    kind = SeriesMotion if isinstance(point.model, Slave2) else EventMotion if point.in_series is not None else DifferentiableMotion
     return kind(point, of, by, tolerance)
 
 
 class SeriesMotion:
-    """A motion with derivatives, as Motion, in communication steps of co-simulation from one time to the next."""
+    """A motion with derivatives, as DifferentiableMotion, in communication steps of co-simulation from one time to the next."""
 
     def __init__(self, point, of, by, tolerance):
         self.point, self.model, self.of, self.by = point, point.model, list(of), list(by)
