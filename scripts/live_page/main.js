@@ -183,7 +183,7 @@ function addControls() {
 function set(index, value) {
   send("set", { index, value });
   const { role, isFixed } = description.variables[index];
-  if (task && role !== "input") endTask("ended, since a value was changed that is no input");
+  if (task && role !== "input") endTask("ended, since a value other than an input was changed");
   if ((role !== "start" && !isFixed) || resetTimer !== null) return;
   // Takes effect at the next start; before the first step the FMU is reset at once.
   if (history.length <= 1) resetTimer = setTimeout(() => send("reset"), 50);

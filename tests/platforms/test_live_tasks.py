@@ -38,7 +38,7 @@ def test_a_load_is_delivered(browser, page_of_fmu):
         page.click("text=Bring the load to rest")
         page.get_by_role("spinbutton", name="m", exact=True).fill("300")
         page.get_by_role("spinbutton", name="m", exact=True).press("Enter")
-        assert page.inner_text(".tasks div") == f"ended, since a value was changed that is no input; best {done:.2f} s"
+        assert page.inner_text(".tasks div") == f"ended, since a value other than an input was changed; best {done:.2f} s"
     x, length, theta, v, w, omega = (np.array(samples)[:, names.index(name)] for name in ("x", "l", "theta", "v", "w", "omega"))
     speed = v + w * np.sin(theta) + length * omega * np.cos(theta)
     met = (np.abs(x + length * np.sin(theta) - 15) <= 0.3) & (np.abs(length * np.cos(theta) - 10) <= 0.3) & (np.abs(speed) <= 0.15)
