@@ -169,7 +169,7 @@ def test_the_energy_has_an_error_only_where_it_has_a_law(tmp_path):
     (["Nothing", "--vary", "l=1:2:3"], "there is no"),
     (["SimplePendulum", "--vary", "q=1:2:3"], "'q' has no start value in SimplePendulum; these have one: theta"),
     (["SimplePendulum", "--vary", "l=1:2"], "'l' has no COUNT"),
-    (["SimplePendulum", "--vary", "l"], "is not NAME=FROM:TO:COUNT"),
+    (["SimplePendulum", "--vary", "l"], "is not a range; expected NAME=FROM:TO:COUNT"),
     (["SimplePendulum", "--vary", "l=1:2:3", "--vary", "l=3"], "varies twice"),
     (["SimplePendulum", "--vary", "l=1:2", "--random", "-5"], "random is -5; expected a whole number of runs"),
     (["SimplePendulum", "--vary", "l=1:2:3", "--step", "-1"], "step is -1.0; expected a positive number"),

@@ -538,7 +538,7 @@ def test_its_state_is_restored_while_it_slides_and_while_it_sticks(open_fmu):
 
 
 REJECTED = {
-    '<friction name="f" coordinate="x" across="vy" force="1"/>': "across and without velocity",
+    '<friction name="f" coordinate="x" across="vy" force="1"/>': "a <friction> has across without velocity",
     '<friction name="f" velocity="vx" across="x*w" force="1"/>': "across has the unit",
     '<friction name="f" velocity="vx" across="2*W" force="1"/>': "the velocity across of a <friction> depends on no velocity",
     '<friction name="f" velocity="vx" across="vy" force="1*N*x/l"/>': None,
