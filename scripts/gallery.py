@@ -188,7 +188,7 @@ def build_site(navigation):
     shutil.copy(ROOT / "scripts" / "gallery_search.js", PAGES / "search.js")
     settings = {"site_name": "lagrange-fmu", "docs_dir": str(PAGES), "site_dir": str(SITE), "nav": navigation, "use_directory_urls": False, "strict": True,
                 "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search", {"mkdocstrings": {"handlers": {"python": {"paths": [str(ROOT / "scripts" / "wheel")], "options": DOCSTRINGS}}}}],
-                "theme": {"name": "mkdocs", "highlightjs": False, "color_mode": "auto"}}  # fmt: skip
+                "theme": {"name": "mkdocs", "highlightjs": False}}  # fmt: skip
     file = BUILD / "mkdocs.json"  # JSON is YAML, which MkDocs reads
     write_whole(file, json.dumps(settings))
     build(load_config(str(file), markdown_extensions=[{"toc": {"slugify": slug}}]))

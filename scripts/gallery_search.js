@@ -1,4 +1,4 @@
-// Search of the site for pages that are opened as files, where browsers do not start workers: it runs in the page, and loads its index as a script.
+// Colors of the site, and its search for pages that are opened as files, where browsers do not start workers: it runs in the page, and loads its index as a script.
 "use strict";
 
 if (location.protocol === "file:") {
@@ -28,3 +28,9 @@ if (location.protocol === "file:") {
     }
   };
 }
+
+// Dark colors where the browser prefers them. The theme's own script for this needs highlight.js, which the site does not have.
+const prefersDark = matchMedia("(prefers-color-scheme: dark)");
+const setColors = () => (document.documentElement.dataset.bsTheme = prefersDark.matches ? "dark" : "light");
+prefersDark.addEventListener("change", setColors);
+setColors();

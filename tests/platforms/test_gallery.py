@@ -61,5 +61,8 @@ def test_the_gallery():
         assert '<system name="HeavyTop"' in page.input_value("#source")
         page.click("text=Gallery")
         page.wait_for_url("**/gallery.html")
+        for scheme in ("dark", "light"):
+            page.emulate_media(color_scheme=scheme)
+            assert page.get_attribute("html", "data-bs-theme") == scheme
     assert complaints == []
     assert [url for url in fetched if not url.startswith(("file:", "blob:", "data:"))] == []
