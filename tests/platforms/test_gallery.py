@@ -63,6 +63,6 @@ def test_the_gallery():
         page.wait_for_url("**/gallery.html")
         for scheme in ("dark", "light"):
             page.emulate_media(color_scheme=scheme)
-            assert page.get_attribute("html", "data-bs-theme") == scheme
+            page.wait_for_function("scheme => document.documentElement.dataset.bsTheme === scheme", arg=scheme)
     assert complaints == []
     assert [url for url in fetched if not url.startswith(("file:", "blob:", "data:"))] == []
