@@ -99,11 +99,12 @@ static size_t find_all_indices(const struct Structure *structure) {
 
 /*
  * Finds the knowns that the unknown, with all its elements, depends on, ascending. Returns their number. With
- * constraints, which move start values, initial unknowns depend on all knowns.
+ * constraints, which move start values, initial unknowns depend on all knowns, except for calculated parameters.
  */
 static size_t find_indices(const struct Structure *structure, size_t unknown, bool initial) {
-  if (initial && structure->dependencies->equations->constraints->count > 0) return find_all_indices(structure);
   const struct InterfaceVariable *variable = &structure->interface->variables[unknown];
+  bool moves = structure->dependencies->equations->constraints->count > 0 && !is_calculated_parameter(&variable->entry);
+  if (initial && moves) return find_all_indices(structure);
   size_t elements = structure->form->has_arrays && variable->array_count > 0 ? variable->array_count : 1, count = 0;
   for (size_t i = 0; i < elements; i++) count = add_indices(structure, count, variable[i].node, initial);
   sort_sizes(structure->indices, count);

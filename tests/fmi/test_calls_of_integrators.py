@@ -222,6 +222,31 @@ def test_drift_is_within_the_tolerance_of_the_steps():
     assert np.max(np.abs(state - [-1.0, 0.0, 0.0, 0.0]) / scales) < steps * 1e-9
 
 
+OPEN = """
+<system name="RodBesideOpenContact">
+  <coordinate name="x" velocity="vx" unit="m" start="0.6"/>
+  <coordinate name="y" velocity="vy" unit="m" start="-0.8"/>
+  <coordinate name="s" velocity="u" unit="m" velocityStart="1"/>
+  <particle name="bob" mass="1" x="x" y="y"/>
+  <particle name="block" mass="1" x="s"/>
+  <constraint name="rod" unit="m">sqrt(x^2 + y^2) - 1</constraint>
+  <contact name="ground" gap="y + 2" unit="m"/>
+  <friction name="rub" velocity="u" force="1"/>
+</system>
+"""
+
+
+def test_open_contacts_are_not_redundant(open_fmu):
+    """Beside an open contact and a friction that slides, a drift of 1e-6 is below a tolerance of 1e-5, and needs no event; one of 1e-4 does."""
+    fmu.build_systems("open-contacts", {"RodBesideOpenContact": OPEN}, versions=[2])
+    rod = open_fmu("RodBesideOpenContact", kind=FMU2Model).initialize(tolerance=1e-5)
+    rod.fmu.newDiscreteStates()
+    rod.fmu.enterContinuousTimeMode()
+    for drift, needs_event in ((1e-6, False), (1e-4, True)):
+        rod.fmu.setContinuousStates(*array(0.6 * (1 + drift), -0.8 * (1 + drift), 0.0, 0.0, 0.0, 1.0))
+        assert bool(rod.fmu.completedIntegratorStep()[0]) == needs_event
+
+
 def test_changed_states_are_reported_at_events(open_fmu):
     """valuesOfContinuousStatesChanged is true at an impact, and false at a sample that sets only modes (FMI 2.0.4, section 3.2.2)."""
     ball = falling_ball(open_fmu)

@@ -36,11 +36,23 @@ HIT = """
   <output name="twice">2*v</output>
 </system>
 """
+LIGHT = """
+<system name="LightPair">
+  <parameter name="m1" start="2e-7" unit="kg" min="0"/>
+  <parameter name="m2" start="1e-7" unit="kg" min="0"/>
+  <coordinate name="x" velocity="vx" unit="m" start="1"/>
+  <coordinate name="y" velocity="vy" unit="m" start="0.5"/>
+  <particle mass="m1" x="x"/>
+  <particle mass="m2" x="y"/>
+  <constraint name="glue" unit="m">x - y</constraint>
+</system>
+"""
 
 
 @pytest.fixture(scope="module", autouse=True)
 def own_systems():
-    fmu.build_systems("initialization-derivatives", {"HangingAndStop": HANGING, "HitAtTheStart": HIT}, versions=[2, 3])
+    systems = {"HangingAndStop": HANGING, "HitAtTheStart": HIT, "LightPair": LIGHT}
+    fmu.build_systems("initialization-derivatives", systems, versions=[2, 3])
 
 
 @pytest.fixture(params=[(fmu, FMU2Slave), (fmu, FMU2Model), (fmi3, FMU3Slave), (fmi3, FMU3Model)], ids=["CS2", "ME2", "CS3", "ME3"])
@@ -152,3 +164,12 @@ def test_no_derivative_of_a_contact_at_rest(open_in_initialization):
     with pytest.raises(FMICallException):
         directional(instance, ["der(h)"], "v")
     assert any("there is no derivative at these start values: beside them 'ground' starts in another mode" in message[-1] for message in instance.messages)
+
+
+def test_parameters_with_small_values(open_in_initialization):
+    """The start is x = y = (m1 x0 + m2 y0)/(m1 + m2), also where a displacement of a mass by 1e-6 kg would make it negative."""
+    instance = open_in_initialization("LightPair")
+    m1, m2, x, y = 2e-7, 1e-7, 1.0, 0.5
+    exact = np.array([m2, -m1]) * (x - y) / (m1 + m2) ** 2
+    for known, slope in zip(("m1", "m2"), exact):
+        np.testing.assert_allclose(directional(instance, ["x", "y"], known), [slope, slope], rtol=1e-8)

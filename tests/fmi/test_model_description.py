@@ -138,6 +138,14 @@ def test_dependencies_are_true(name, open_fmu):
                 assert set(dependencies) == changed[index], reals[index - 1]
 
 
+def test_calculated_parameters_depend_on_parameters_alone():
+    """Constraints move start values of states, which Ja = m w^2/6 and Jt = m (l^2 + w^2)/12 do not contain."""
+    names = [v.get("name") for v in variables("Bricard")]
+    found = {names[index - 1]: {names[i - 1] for i in dependencies} for index, dependencies, _ in unknowns("Bricard", "InitialUnknowns")}
+    assert found["Ja"] == {"m", "w"} and found["Jt"] == {"m", "l", "w"}
+
+
+
 @pytest.mark.parametrize("name", ALL_NAMES)
 def test_derivatives_have_the_unit_of_their_state_per_second(name):
     units = {u.get("name"): u.find("BaseUnit") for u in document(name).findall("UnitDefinitions/Unit")}

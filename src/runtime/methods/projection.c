@@ -139,9 +139,14 @@ static bool others_hold(const struct ProjectionWork *work, const double *state, 
   return true;
 }
 
+/* True if a constraint follows from others. The row of an open contact is 0, and takes no part. */
+static bool is_redundant(const struct ProjectionWork *work, size_t constraint) {
+  return isinf(work->pivot[constraint]) && work->slope[constraint] > 0.0;
+}
+
 static bool has_redundant(const struct ProjectionWork *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (isinf(work->pivot[j])) return true;
+    if (is_redundant(work, j)) return true;
   return false;
 }
 
@@ -307,7 +312,7 @@ static void log_moves(const struct Instance *instance, const double *before, dou
 
 static void log_redundant(const struct Instance *instance, const struct ProjectionWork *work) {
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (isinf(work->pivot[j]) && work->slope[j] > 0.0) /* the row of an open contact is 0 */
+    if (is_redundant(work, j))
       log_message(instance, STATUS_DONE, "time %g: the %s '%s' is redundant; the forces are those of least norm",
                   instance->fmu_state->time, evaluate_kind(j), lagrangian.constraints.names[j]);
 }

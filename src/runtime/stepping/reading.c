@@ -78,26 +78,31 @@ void reading_end(struct Instance *instance) {
 /*
  * Displacements of the difference quotients, in units of the scales. The relative truncation error of the first is
  * about 1e-12. The others serve where the displaced starts are not smooth. Below 1e-6 a contact at rest would end the
- * bounces of displaced velocities, which hides the kink.
+ * bounces of displaced velocities, which hides the kink. The scales of inputs and parameters are at least 1; if no
+ * start exists there, as beside an inertia of 1e-7 kg m2, they are the values themselves.
  */
 static const double displacement[] = {1e-3, 1e-5, 1e-6};
 
 /* Largest ratio of second difference and displacement that is not a kink, in units of the scales. */
 static const double straight = 1e-2;
 
-/* Returns the largest of count values, each divided by the variable that it changes, but at least by 1. */
-static double relative_size(const double *value, const double *of, size_t count) {
+/* Returns the largest of count values, each divided by the scale of the variable that it changes. */
+static double relative_size(const double *value, const double *of, size_t count, double least_scale) {
   double largest = 0.0;
-  for (size_t i = 0; i < count; i++) largest = fmax(largest, fabs(value[i]) / fmax(fabs(of[i]), 1.0));
+  for (size_t i = 0; i < count; i++) {
+    double scale = of[i] != 0.0 ? fmax(fabs(of[i]), least_scale) : 1.0;
+    largest = fmax(largest, fabs(value[i]) / scale);
+  }
   return largest;
 }
 
-static double size_of_seed(const struct Instance *instance, const struct Seed *seed) {
+/* least_scale: of inputs and parameters. */
+static double size_of_seed(const struct Instance *instance, const struct Seed *seed, double least_scale) {
   double size = fabs(seed->time);
   for (size_t i = 0; i < lagrangian.state_count; i++)
     size = fmax(size, fabs(seed->state[i]) / scale_of(instance->state, i));
-  size = fmax(size, relative_size(seed->input, instance->input, lagrangian.input_count));
-  return fmax(size, relative_size(seed->parameter, instance->parameter, lagrangian.parameter_count));
+  size = fmax(size, relative_size(seed->input, instance->input, lagrangian.input_count, least_scale));
+  return fmax(size, relative_size(seed->parameter, instance->parameter, lagrangian.parameter_count, least_scale));
 }
 
 /*
@@ -175,6 +180,17 @@ static bool is_smooth(const struct Slope *slope, const double *state, double siz
   return is;
 }
 
+/* Finds the slope of the start kept along a seed of this size. True if it exists and is smooth. */
+static bool find_slope(struct Instance *instance, const struct Seed *seed, double size, const struct FmuState *kept,
+                       struct Slope *slope) {
+  bool is_found = false;
+  for (size_t k = 0; k < sizeof displacement / sizeof *displacement && !is_found; k++) {
+    slope->exists = find_differences(instance, seed, displacement[k] / size, kept, slope);
+    is_found = slope->exists && is_smooth(slope, kept->values, size);
+  }
+  return is_found;
+}
+
 /*
  * Replaces state by the directional derivative of the start, unless it moves no states. kept: workspace of
  * fmu_state_size() bytes. False if the start has none; slope->other then names the cause, if it is known.
@@ -182,15 +198,14 @@ static bool is_smooth(const struct Slope *slope, const double *state, double siz
 static bool find_along(struct Instance *instance, const struct Seed *seed, double *state, struct FmuState *kept,
                        struct Slope *slope) {
   struct Log log = instance->log;
-  double size = size_of_seed(instance, seed);
+  double size = size_of_seed(instance, seed, 1.0), size_by_values = size_of_seed(instance, seed, 0.0);
   bool is_found = size == 0.0;
   memcpy(kept, instance->fmu_state, fmu_state_size());
   instance->log.wanted = 0;
-  for (size_t k = 0; k < sizeof displacement / sizeof *displacement && !is_found; k++) {
-    slope->exists = find_differences(instance, seed, displacement[k] / size, kept, slope);
-    is_found = slope->exists && is_smooth(slope, kept->values, size);
-    if (is_found && slope->is_moved) memcpy(state, slope->along, lagrangian.state_count * sizeof *state);
-  }
+  if (!is_found) is_found = find_slope(instance, seed, size, kept, slope);
+  if (!is_found && !slope->exists && size_by_values > size)
+    is_found = find_slope(instance, seed, size_by_values, kept, slope);
+  if (is_found && slope->is_moved) memcpy(state, slope->along, lagrangian.state_count * sizeof *state);
   instance->log = log;
   memcpy(instance->fmu_state, kept, fmu_state_size());
   instance->parameter_constants_are_stale = instance->modes_stay = true;
