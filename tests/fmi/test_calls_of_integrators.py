@@ -198,6 +198,36 @@ def test_few_events_project_onto_the_constraints(name, others):
     assert abs(np.hypot(*state[:2]) - 1.0) < np.sqrt(tolerance)
 
 
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+def test_few_events_beside_a_redundant_constraint(tolerance):
+    """Bricard's loop moves at every tolerance with few events, and within the tolerance of the steps as in co-simulation."""
+    steps, events, state = integrate("Bricard", 2.0, tolerance)
+    exact = fmu.Instance("Bricard").initialize(tolerance=1e-12)
+    exact.step(2.0)
+    expected = exact.get(*(unknown.variable.derivative.name for unknown in exact.description.derivatives))
+    exact.free()
+    assert events <= 20
+    np.testing.assert_allclose(state, expected, rtol=0, atol=steps * tolerance)
+
+
+@pytest.mark.parametrize("distance", [1e-7, 1e-5, 1e-3])
+def test_accelerations_near_redundant_constraints(distance, open_fmu):
+    """Near the constraints the accelerations of Bricard's loop are those on them, up to the distance, also of GetReal; velocities are those that were set."""
+    loop = open_fmu("Bricard", kind=FMU2Model).initialize()
+    names = [unknown.variable.name for unknown in loop.description.derivatives]
+    states = np.array(loop.get(*(unknown.variable.derivative.name for unknown in loop.description.derivatives)))
+    loop.fmu.newDiscreteStates()
+    loop.fmu.enterContinuousTimeMode()
+    there = np.array(loop.get(*names))
+    for seed in range(5):
+        trial = states + distance * np.random.default_rng(seed).uniform(-1, 1, len(states))
+        loop.fmu.setContinuousStates(*array(*trial))
+        nearby = np.array(loop.get(*names))
+        np.testing.assert_array_equal(nearby[:5], trial[5:])
+        np.testing.assert_allclose(nearby[5:], there[5:], rtol=0, atol=100 * distance)
+        np.testing.assert_array_equal(loop.get(*(unknown.variable.derivative.name for unknown in loop.description.derivatives)), trial)
+
+
 @pytest.mark.parametrize("rows", [0.01, 0.1])
 @pytest.mark.parametrize("name", ["PendulumCartesian", "FourBar"])
 def test_few_events_without_a_tolerance(name, rows, monkeypatch):

@@ -1,9 +1,11 @@
 #include "evaluation/evaluate.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "instance/initial_state.h"
 #include "instance/event_laws.h"
+#include "instance/projection.h"
 
 const char *evaluate_name(enum VariableKind kind, size_t index) {
   for (size_t i = 0; i < lagrangian.variable_count; i++)
@@ -88,6 +90,14 @@ enum Status evaluate_prepare(struct Instance *instance) {
   return STATUS_DONE;
 }
 
+struct Point evaluate_point(struct Instance *instance) {
+  struct Point point = instance_point(instance);
+  if (instance->fmu_state->has_redundant == 0) return point;
+  const double *state = lagrangian.constraints.projection->nearest(instance, point.time);
+  if (state != NULL) point.state = state;
+  return point;
+}
+
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative) {
   instance->singular = lagrangian.derivatives(point, derivative);
   if (instance->singular != 0) return false;
@@ -103,8 +113,11 @@ static bool return_to_domain(struct Instance *instance, struct Point *point) {
 enum Status evaluate_fmu_state(struct Instance *instance, double *derivative) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
-  struct Point point = instance_point(instance);
-  if (evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
+  struct Point point = evaluate_point(instance);
+  if (evaluate_derivatives(instance, &point, derivative)) {
+    memcpy(derivative, instance->state + lagrangian.coordinate_count, lagrangian.coordinate_count * sizeof *derivative);
+    return STATUS_DONE;
+  }
   if (return_to_domain(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
   return discard_for_singularity(instance);
 }
@@ -138,7 +151,8 @@ static bool evaluate_result_at(struct Instance *instance, const struct Point *po
 static enum Status evaluate_result(struct Instance *instance, const struct ScalarVariable *variable, double *value) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
-  struct Point point = instance_point(instance);
+  bool feels_forces = lagrangian.results.uses_acceleration[variable->index];
+  struct Point point = feels_forces ? evaluate_point(instance) : instance_point(instance);
   bool has_value = evaluate_result_at(instance, &point, variable->index, value);
   if (!(has_value && isfinite(*value)) && return_to_domain(instance, &point))
     has_value = evaluate_result_at(instance, &point, variable->index, value);

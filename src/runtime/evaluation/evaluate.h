@@ -38,6 +38,14 @@ void log_violated(const struct Instance *instance, enum Status status, double ti
 enum Status evaluate_prepare(struct Instance *instance);
 
 /*
+ * Returns the point at which accelerations and forces are evaluated, with current parameter constants: that of the
+ * instance's time and state. The integrator of an importer leaves the constraints by its error. There redundant
+ * constraints contradict each other: beyond the angle of saddle_pivot() they count as independent, with large forces.
+ * If there are any, the state is the nearest one that fulfils the constraints.
+ */
+struct Point evaluate_point(struct Instance *instance);
+
+/*
  * Computes derivative[state_count] at a point with current parameter constants. False if it is not finite or the mass
  * matrix is singular; instance->singular names the coordinate.
  */

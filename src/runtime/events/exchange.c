@@ -95,7 +95,8 @@ static void find_shifts(struct Instance *instance, const double *value, double *
  */
 bool exchange_indicators(struct Instance *instance, double *value) {
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
-  if (!indicators_at(instance, instance->fmu_state->time, instance->state, value)) return false;
+  struct Point point = evaluate_point(instance);
+  if (!indicators_at(instance, point.time, point.state, value)) return false;
   size_t count = indicator_count(lagrangian.switches);
   double *shift = instance->switching_work + count; /* values may be stored before it */
   complete_indicators(instance, value);

@@ -92,7 +92,7 @@ static enum Status derivative_along_seed(struct Instance *instance, const unsign
   initial_state_add_along(instance, direction.state, direction.parameter);
   enum Status status = reading_follow_start(instance, &direction.seed, direction.state);
   if (status == STATUS_DONE) status = evaluate_prepare(instance);
-  struct Point point = instance_point(instance);
+  struct Point point = evaluate_point(instance);
   if (status == STATUS_DONE) status = follow(instance, &point, &direction);
   if (status != STATUS_DONE) return status;
   return read_along(instance, &point, &direction, unknown, unknown_count, value);

@@ -122,6 +122,14 @@ bool exchange_is_event_due(struct Instance *instance) {
   return lagrangian.event_laws->is_due(instance) || (times != NULL && times->is_due(instance));
 }
 
+/* Redundant constraints can be recognized while the state fulfils all of them, as after an event. */
+static void note_redundant(struct Instance *instance) {
+  const struct Projection *constraints = lagrangian.constraints.projection;
+  if (constraints == NULL || evaluate_prepare(instance) != STATUS_DONE) return;
+  bool is_known = isfinite(constraints->drift(instance, instance->fmu_state->time));
+  instance->fmu_state->has_redundant = is_known && constraints->found_redundant(instance) ? 1 : 0;
+}
+
 /*
  * Importers update the discrete states in each event mode (FMI 2.0.4, section 3.2.2; FMI 3.0.2, section 2.3.5). Some do
  * not after the initialization (pathsim 0.27), which changes nothing unless an event is due.
@@ -133,24 +141,9 @@ enum Status exchange_leave_event_mode(struct Instance *instance) {
   if (lacks_update && exchange_is_event_due(instance))
     return reject_call(instance, "an event is due; expected an update of the discrete states before it");
   fmu_state->phase = is_exchange ? PHASE_CONTINUOUS_TIME : PHASE_STEP_COMPLETE;
+  if (is_exchange) note_redundant(instance);
   return STATUS_DONE;
 }
-
-/*
- * True if the state must be projected onto the constraints, which takes an event.
- *
- * The importer's integrator errs by up to the tolerance e in each step, and so by up to n e after n steps. The drift d
- * is the part of this error across the constraints. It changes the forces, and so the motion along the constraints, by
- * an error of the order of d. While d < n e, this does not exceed the error along the constraints. After an event the
- * integrator starts at order 1 with short steps, so more events would cost time and accuracy. The drift grows with n^2,
- * since errors of velocities add up, so the first steps need no event. In long runs, d^2 < e keeps terms of second
- * order below the tolerance.
- *
- * Redundant constraints contradict each other by about d. Once the sine of the angle between one and the others, of
- * the order of d, exceeds the 1e-6 of saddle_pivot(), it counts as independent, and its force becomes large. The
- * contradiction costs about 5 d, and each event some tolerances: 3e-8 is between, for tolerances of 1e-8 to 1e-10.
- */
-static const double largest_redundant_drift = 3e-8;
 
 /*
  * Tolerance e of an importer that passes none, as FMPy in model exchange. Where its integrator is more exact, the drift
@@ -163,14 +156,22 @@ static double tolerance_of_importer(const struct FmuState *fmu_state) {
   return is_default ? fmax(fmu_state->tolerance, usual_tolerance) : fmu_state->tolerance;
 }
 
+/*
+ * True if the state must be projected onto the constraints, which takes an event.
+ *
+ * The importer's integrator errs by up to the tolerance e in each step, and so by up to n e after n steps. The drift d
+ * is the part of this error across the constraints. It changes the forces, and so the motion along the constraints, by
+ * an error of the order of d. While d < n e, this does not exceed the error along the constraints. After an event the
+ * integrator starts at order 1 with short steps, so more events would cost time and accuracy. The drift grows with n^2,
+ * since errors of velocities add up, so the first steps need no event. In long runs, d^2 < e keeps terms of second
+ * order below the tolerance.
+ */
 static bool has_drifted(struct Instance *instance) {
   const struct FmuState *fmu_state = instance->fmu_state;
   if (lagrangian.constraints.projection == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
   double drift = lagrangian.constraints.projection->drift(instance, fmu_state->time);
   double tolerance = tolerance_of_importer(fmu_state);
-  double largest = fmin((double)fmu_state->completed_steps * tolerance, sqrt(tolerance));
-  if (lagrangian.constraints.projection->found_redundant(instance)) largest = fmin(largest, largest_redundant_drift);
-  return drift > largest;
+  return drift > fmin((double)fmu_state->completed_steps * tolerance, sqrt(tolerance));
 }
 
 enum Status exchange_complete_step(struct Instance *instance, bool *needs_event) {

@@ -66,7 +66,7 @@ static enum Status read_known(struct Instance *instance, const struct Weights *w
 static enum Status sweep(struct Instance *instance, const struct Weights *weights) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
-  struct Point point = instance_point(instance);
+  struct Point point = evaluate_point(instance);
   struct Seed seed = {.state = weights->derivative, .result = weights->result};
   instance->singular = lagrangian.weighted_gradient(&point, &seed, weights->gradient);
   return instance->singular == 0 ? STATUS_DONE : discard_for_singularity(instance);

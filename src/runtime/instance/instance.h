@@ -61,6 +61,7 @@ struct FmuState {
   int64_t statistics[STATISTIC_COUNT];
   int64_t completed_steps;                      /* of an importer that integrates, since the start */
   int64_t update;                               /* enum Update */
+  int64_t has_redundant;                        /* model exchange: constraints depend on each other at the last event */
   int64_t reported_statistics[STATISTIC_COUNT]; /* at the last event mode of a co-simulation */
   double time, start_time, stop_time;
   double tolerance;

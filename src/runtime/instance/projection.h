@@ -14,6 +14,8 @@ struct Projection {
   double (*project)(struct Instance *instance, double time, double *state);
   /* Returns the change by project() at the instance's state, which stays as it is. */
   double (*drift)(struct Instance *instance, double time);
+  /* Returns the instance's state after project(), valid until the next projection; NULL if that fails. */
+  const double *(*nearest)(struct Instance *instance, double time);
   /* True if the last project() or drift() has found redundant constraints. */
   bool (*found_redundant)(struct Instance *instance);
   /*

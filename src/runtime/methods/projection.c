@@ -201,6 +201,10 @@ static double drift(struct Instance *instance, double time) {
   return project(instance, time, work.before);
 }
 
+static const double *nearest(struct Instance *instance, double time) {
+  return isfinite(drift(instance, time)) ? work_of(instance).before : NULL;
+}
+
 /* Returns the first constraint whose residual is not finite. */
 static size_t find_without_value(const struct ProjectionWork *work) {
   size_t j = 0;
@@ -471,6 +475,7 @@ static const char *weakest(struct Instance *instance, double time, const double 
 
 const struct Projection projection = {.project = project,
                                       .drift = drift,
+                                      .nearest = nearest,
                                       .found_redundant = found_redundant,
                                       .make_consistent = make_consistent,
                                       .follow_change = follow_change,
