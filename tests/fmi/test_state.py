@@ -224,8 +224,9 @@ def test_truncated_and_foreign_bytes_are_errors(open_fmu):
 # --- Forged states with the right checksum ---
 
 HEADER = 64  # bytes; the last eight are the checksum of the snapshot, which follows
-# The snapshot: eight integers, the statistics, the steps of an integrator, the update in event mode, the statistics as reported, nine numbers, and then values.
-MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, UPDATE, TIME = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72, HEADER + 80, HEADER + 128
+# The snapshot: eight integers, the statistics, the steps of an integrator, the update in event mode, a mark of redundant constraints, the statistics as reported, nine numbers, and then values.
+MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, UPDATE = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72, HEADER + 80
+REDUNDANT, TIME = HEADER + 88, HEADER + 136
 NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end", "searched", "switched"]
 VALUES = TIME + 8 * len(NUMBERS)
 
@@ -259,7 +260,7 @@ def test_forging_nothing_is_no_forgery(open_fmu):
 FORGERIES = [("=i", MODE, mode) for mode in (-1, 2, 3, 8, 2**31 - 1)]
 FORGERIES += [("=i", WAITING, number) for number in (-1, 1, 2**31 - 1)] + [("=i", WAITING + 4, number) for number in (-1, 1000)]
 FORGERIES += [("=i", place, value) for place in range(HEADER + 8, WAITING, 4) for value in (-1, 4)]
-FORGERIES += [("=q", UPDATE, -1), ("=q", UPDATE, 3), ("=q", COMPLETED_STEPS, -1), ("=q", STATISTICS, -1), ("=q", STATISTICS + 16, 2**63 - 1)]
+FORGERIES += [("=q", UPDATE, -1), ("=q", UPDATE, 3), ("=q", REDUNDANT, -1), ("=q", REDUNDANT, 1), ("=q", COMPLETED_STEPS, -1), ("=q", STATISTICS, -1), ("=q", STATISTICS + 16, 2**63 - 1)]
 FORGERIES += [("=d", TIME + 8 * i, value) for i in range(len(NUMBERS)) for value in (np.nan, np.inf)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index("tolerance"), value) for value in (0.0, -1e-6, 1.0)]
 FORGERIES += [("=d", TIME + 8 * NUMBERS.index("suggested_step"), -1.0)]

@@ -24,7 +24,7 @@ struct Header {
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
 /* Version of the layout of snapshots; a change of struct FmuState or of a solver's part raises it. */
-enum { VERSION = 10 };
+enum { VERSION = 11 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + fmu_state_size();
@@ -90,6 +90,8 @@ static bool are_choices(const struct FmuState *fixed) {
   const int32_t flags[] = {fixed->experiment_defined, fixed->stop_time_defined, fixed->input_derivatives_set};
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (flags[i] != 0 && flags[i] != 1) return false;
+  int64_t most_redundant = lagrangian.constraints.projection != NULL ? 1 : 0;
+  if (fixed->has_redundant < 0 || fixed->has_redundant > most_redundant) return false;
   return fixed->changed >= CHANGED_NOTHING && fixed->changed <= CHANGED_COURSE && fixed->update >= UPDATE_MISSING &&
          fixed->update <= UPDATE_DONE;
 }
