@@ -14,6 +14,7 @@
 #include "arithmetic.h"
 #include "passage.h"
 #include "real.h"
+#include "resting.h"
 #include "series.h"
 #include "series_limit.h"
 #include "variable_type.h"
@@ -185,11 +186,11 @@ struct PlaneMetadata {
   size_t lower, upper;      /* modes that hold speeds; upper < 0 is a bound on the velocity along the slip direction */
 };
 
-/* A velocity that is exactly 0 at rest in all that uses it: the index of its mode, and of its coordinate. */
+/* A velocity that is exactly 0 at rest in all that uses it. */
 struct RestingMetadata {
-  size_t mode; /* 1 while it is free, 0 at rest */
-  size_t coordinate;
-  bool is_prescribed; /* its motion is */
+  enum RestingKind kind;
+  size_t mode;  /* enum RestingMode */
+  size_t index; /* of the coordinate, or of the branch */
 };
 
 /* An assignment of an event, to a state or a mode. */

@@ -1,5 +1,7 @@
 """Friction along velocities that drives and constraints prescribe, with dwells and restarts; a belt that starts to move under a box."""
 
+import math
+
 import fmpy
 import numpy as np
 import pytest
@@ -64,6 +66,36 @@ FORCES = {
 def name_of(body, method):
     return f"Given{body}{method.title()}"
 
+# Motions by inputs: the constraint or the acceleration, with what the drive moves; the ratio of the velocities of y and x.
+HAND = '<input name="u" derivatives="2"/><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><constraint name="hand">u - x</constraint>'
+RATE = '<input name="s" derivatives="1"/><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><constraint name="hand">s - v</constraint>'
+ACCELERATION = '<input name="a"/>' + DRIVE.format("a")
+BY_INPUTS = {
+    "Hand": (HAND + FRICTION.format('coordinate="x"'), 0),
+    "HandLever": (HAND + JOINED.format("y + 0.3*x") + FRICTION.format('coordinate="y"'), -0.3),
+    "Rate": (RATE + FRICTION.format('coordinate="x"'), 0),
+    "RateLever": (RATE + JOINED.format("w - 4*v") + FRICTION.format('coordinate="y"'), 4),
+    "Acceleration": (ACCELERATION + FRICTION.format('coordinate="x"'), 0),
+    "AccelerationLever": (ACCELERATION + JOINED.format("y - 3*x") + FRICTION.format('coordinate="y"'), 3),
+}
+
+
+def stop_and_go(time):
+    """Position, velocity and acceleration: a stop at 0.5 s, and a start at 2 s."""
+    if time < 0.25:
+        return time**2, 2 * time, 2
+    if time < 0.5:
+        return 0.125 - (time - 0.5) ** 2, 1 - 2 * time, -2
+    return 0.125 - 1.5 * max(0, time - 2) ** 2, -3 * max(0, time - 2), -3 if time >= 2 else 0
+
+
+def swing_and_go(time):
+    """A swing of 1 s, and a start at 2 s. Acceleration by steps: constant in each communication step."""
+    if time < 1:
+        return (1 - math.cos(2 * math.pi * time)) / (2 * math.pi), math.sin(2 * math.pi * time), 2 * math.pi * math.cos(2 * math.pi * time)
+    return -1.5 * max(0, time - 2) ** 2, -3 * max(0, time - 2), -3 if time >= 2 else 0
+
+
 # In a plane: the friction of 5 N opposes the velocity (v, w), and is 0 at rest. The mass is 1 kg.
 PLANE = ('<coordinate name="x" velocity="v" acceleration="{}"/><coordinate name="y" velocity="w" acceleration="{}"/><particle mass="1" x="x" y="y"/>'
          '<friction name="rub" velocity="v" across="w" force="5"/><output name="across">y.force</output>')  # fmt: skip
@@ -104,6 +136,12 @@ def built():
         for method in METHODS:
             name = f"Dwells{body}{method.title()}"
             texts[name] = (f'<system name="{name}">{elements}<output name="drive">x.force</output><output name="turns">sign(v)</output>'
+                           f'<solver method="{method}" tolerance="1e-9"/></system>')  # fmt: skip
+    for body, (elements, _) in BY_INPUTS.items():
+        drive = "x.force" if "acceleration=" in elements else "hand.force"
+        for method in METHODS:
+            name = f"ByInput{body}{method.title()}"
+            texts[name] = (f'<system name="{name}">{elements}<output name="drive">{drive}</output><output name="turns">sign(v)</output>'
                            f'<solver method="{method}" tolerance="1e-9"/></system>')  # fmt: skip
     build_systems("given-frictions", texts)
 
@@ -192,3 +230,26 @@ def test_dwelling_drives_in_model_exchange(body):
                              output=["drive", "rub.force", "turns"], relative_tolerance=1e-9)  # fmt: skip
     for row in rows:
         check_dwell(body, row["time"], row["drive"], row["rub.force"], row["turns"])
+
+
+@pytest.mark.parametrize("step", [0.0625, 0.05])
+@pytest.mark.parametrize("path", [stop_and_go, swing_and_go])
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("body", BY_INPUTS)
+def test_inputs_that_dwell(open_fmu, body, method, path, step):
+    """At rest no force acts. After 2 s the friction of 5 N opposes the velocity, and the drive also accelerates both bodies by 3 m/s2."""
+    _, k = BY_INPUTS[body]
+    instance = open_fmu(f"ByInput{body}{method.title()}")
+    names = {"H": ["u", "der(u)", "der(der(u))"], "R": [None, "s", "der(s)"], "A": [None, None, "a"]}[body[0]]
+    instance.initialize({name: value for name, value in zip(names, path(0)) if name})
+    for i in range(round(3 / step)):
+        time = i * step
+        instance.set({name: value for name, value in zip(names, path(time + 1e-12)) if name})
+        instance.step(step)
+        drive, force, turns = instance.get("drive", "rub.force", "turns")
+        if 1.01 < time + step < 1.99 or (path is stop_and_go and 0.51 < time + step < 1.99):
+            assert (drive, force, turns) == (pytest.approx(0, abs=1e-12), 0, 0), time
+        elif time + step > 2.01:
+            direction = -np.sign(k or 1)
+            assert (force, turns) == (5 * direction, -1), time
+            assert drive == pytest.approx(-3 * (1 + k**2) + (k or 1) * 5 * direction, abs=1e-6), time

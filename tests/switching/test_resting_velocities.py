@@ -75,6 +75,20 @@ TURNING = """<system name="RestingTurning">
   <output name="sign1">sign(vx)</output><output name="seen">vx</output>
 </system>
 """
+# Disks on each other: the two upper frictions keep w1 - w3 at 0 together, while the disks turn on a floor.
+DISKS = f"""<parameter name="j" start="1.1"/>
+  <coordinate name="a" velocity="w1" unit="rad" velocityStart="0.1"/><coordinate name="b" velocity="w2" unit="rad" velocityStart="0.1"/>
+  <coordinate name="c" velocity="w3" unit="rad" velocityStart="0.1"/>
+  <kinetic>w1^2/2 + j*w2^2/2 + 0.9*w3^2/2</kinetic>
+  <friction name="upper" velocity="1.3*(w1 - w2)" force="20"/><friction name="lower" velocity="w2 - w3" force="20"/>
+  <friction name="floor" coordinate="c" force="{{limit}}"/>
+  <force coordinate="a">{PUSH}</force>
+  <mode name="ahead" start="-1"/><mode name="behind" start="-1"/>
+  <event when="w1 - w3 > 0"><set mode="ahead">time</set></event><event when="w1 - w3 &lt; 0"><set mode="behind">time</set></event>
+  <output name="speed">w1</output>
+"""
+DISK_LIMITS = {"If": "if(w1 - w3 > 0, 4, 1)", "Back": "if(w3 - w1 > 0, 4, 1)", "Sign": "2.5 + 1.5*sign(w1 - w3)"}
+INERTIAS = [0.3, 0.7, 1.1, 1.7, 2.3, 3.1]
 SCENES = {
     "Slope": (SLOPE + CONSTRAINT, {"X": "if(vx > 0, 4, 1)", "Y": "if(vy > 0, 4, 1)", "Sign": "2.5 + 1.5*sign(vx)"}),
     "Rates": (SLOPE + RATES, {"X": "if(vx > 0, 4, 1)", "Y": "if(vy > 0, 4, 1)"}),
@@ -119,6 +133,9 @@ def built():
                                      ((case, name_of(*case)) for case in CASES[::2])}, "--form", "tables")  # fmt: skip
     build_systems("resting-skate", {f"RestingSkate{method.title()}": SYSTEM.format(name=f"RestingSkate{method.title()}", elements=SKATE, method=method)
                                     for method in METHODS} | {"RestingTurning": TURNING})  # fmt: skip
+    build_systems("resting-disks", {name_of("Disks", law, method): SYSTEM.format(name=name_of("Disks", law, method), method=method,
+                                                                                 elements=DISKS.format(limit=limit))
+                                    for law, limit in DISK_LIMITS.items() for method in METHODS})  # fmt: skip
     build_systems("resting", {name_of(scene, law, method): text_of(scene, law, method) for scene, law in CASES for method in METHODS})
 
 
@@ -180,6 +197,36 @@ def test_events_wait_in_model_exchange():
         assert all(row["rise"] == -1 and row["back"] == -1 for row in rows if row["time"] < 1.95), angle
         assert rows["rise"][-1] == pytest.approx(2, abs=1e-4) and rows["back"][-1] == pytest.approx(2, abs=1e-4)
         assert rows["turn"][-1] == -1 and rows["vx"][-1] == pytest.approx(-math.cos(angle), abs=5e-6)
+
+
+def speed_of_disks(law, j):
+    """At 4 s: the disks come to rest before the push, slip at the limit, and turn as one body of inertia j + 1.9 from then on."""
+    limit = 2.5 if law == "Sign" else 1
+    slip = 1 + limit / 2
+    return -(9 - (slip - 1) ** 2 - limit * (4 - slip)) / (j + 1.9)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("law", DISK_LIMITS)
+def test_sums_of_velocities_at_rest(open_fmu, law, method):
+    for j in INERTIAS:
+        instance = open_fmu(name_of("Disks", law, method)).initialize({"j": j})
+        instance.run(4, 0.1, "speed")
+        assert instance.get("speed") == pytest.approx(speed_of_disks(law, j), abs=1e-7), j
+        assert instance.get("ahead", "behind") == [-1, -1], j
+
+
+@pytest.mark.parametrize("law", DISK_LIMITS)
+def test_sums_of_velocities_at_rest_elsewhere(law):
+    """In model exchange and in an ensemble."""
+    name = name_of("Disks", law)
+    results, _ = ensemble(name, ["j"], ["speed"], [4.0]).run([[j] for j in INERTIAS])
+    for j, ((speed,),) in zip(INERTIAS, results):
+        rows = fmpy.simulate_fmu(str(fmu.archive(name)), fmi_type="ModelExchange", stop_time=4, output_interval=0.1, relative_tolerance=1e-9,
+                                 start_values={"j": j}, output=["speed", "ahead", "behind"])  # fmt: skip
+        assert speed == pytest.approx(speed_of_disks(law, j), abs=1e-7), j
+        assert rows["speed"][-1] == pytest.approx(speed_of_disks(law, j), abs=5e-6), j
+        assert (rows["ahead"][-1], rows["behind"][-1]) == (-1, -1), j
 
 
 def test_a_velocity_that_is_0_for_an_instant_is_not_at_rest(open_fmu):

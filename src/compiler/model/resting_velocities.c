@@ -27,6 +27,16 @@ void substitute_in_observers(struct Model *model, const Node *replacements) {
     substitute(graph, &model->states.items[i].rate, 1, replacements, &model->states.items[i].rate);
 }
 
+/* Appends a velocity with a new mode, and returns this mode. */
+static Node append_resting(struct Model *model, const char *name, struct RestingVelocity resting) {
+  struct Switches *switches = &model->switches;
+  int index = (int)(switches->first + switches->mode_count++);
+  resting.mode = graph_symbol(model->graph, MODE, index, format_text("%s.moves", name));
+  switches->resting = make_room(switches->resting, switches->resting_count, sizeof *switches->resting);
+  switches->resting[switches->resting_count++] = resting;
+  return resting.mode;
+}
+
 /* --- Velocities of coordinates --- */
 
 /* Collects all that observes the motion: indicators of branches, assignments of events, outputs, rates of states. */
@@ -48,17 +58,14 @@ static struct NodeList observers_of(const struct Model *model) {
  */
 static void append_resting_velocities(struct Model *model) {
   struct Graph *graph = model->graph;
-  struct Switches *switches = &model->switches;
   const struct NodeList observers = observers_of(model);
   cone_collect(graph->cone, graph, observers.nodes, observers.count);
   for (size_t i = 0; i < model->velocities.count; i++) {
     const struct Variable *velocity = &model->velocities.items[i];
     bool is_prescribed = model->prescribed.motions[i].is_prescribed;
     if (!is_prescribed && !cone_has(graph->cone, velocity->node)) continue;
-    int index = (int)(switches->first + switches->mode_count++);
-    Node mode = graph_symbol(graph, MODE, index, format_text("%s.moves", velocity->name));
-    switches->resting = make_room(switches->resting, switches->resting_count, sizeof *switches->resting);
-    switches->resting[switches->resting_count++] = (struct RestingVelocity){mode, i, is_prescribed};
+    enum RestingKind kind = is_prescribed ? RESTING_DRIVE : RESTING_VELOCITY;
+    append_resting(model, velocity->name, (struct RestingVelocity){.kind = kind, .coordinate = i});
   }
 }
 
@@ -68,6 +75,7 @@ static void replace_velocities(struct Model *model) {
   append_resting_velocities(model);
   Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->resting_count; i++) {
+    if (switches->resting[i].kind == RESTING_INDICATOR) continue;
     Node velocity = model->velocities.items[switches->resting[i].coordinate].node;
     replacements[graph->vertices[velocity].left] = function(graph, GUARD, switches->resting[i].mode, velocity);
   }
@@ -102,8 +110,47 @@ static void replace_in_indicators(struct Model *model) {
   }
 }
 
+/* --- Sums of velocities in indicators, such as w1 - w3 --- */
+
+/* True if the value is a sum of several velocities with coefficients that do not depend on velocities, and a rest. */
+static bool has_sum_of_velocities(struct Graph *graph, Node value) {
+  if (graph_depends_on(graph, value, ACCELERATION)) return false;
+  const struct Gradient gradient = gradient_by_kinds(graph, value, OF_VELOCITIES);
+  bool is_linear = gradient.count > 1;
+  for (size_t i = 0; i < gradient.count; i++) is_linear &= !graph_depends_on(graph, gradient.values[i], VELOCITY);
+  return is_linear;
+}
+
+/* Returns the mode of an equal indicator among the first branches; ZERO for none. */
+static Node mode_of_equal(const struct Switches *switches, const Node *indicators, size_t count) {
+  for (size_t i = 0; i < count; i++)
+    if (indicators[i] == indicators[count] && switches->branches[i].moves != ZERO) return switches->branches[i].moves;
+  return ZERO;
+}
+
+/* Frictions and constraints may keep a sum of moving velocities at 0. The indicator is then its value without them. */
+static void replace_sums(struct Model *model) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  Node *without = own_symbols(graph), *before = allocate(switches->branch_count, sizeof *before), rest;
+  for (size_t i = 0; i < model->velocities.count; i++)
+    without[graph->vertices[model->velocities.items[i].node].left] = ZERO;
+  for (size_t i = 0; i < switches->branch_count; i++) {
+    struct Branch *branch = &switches->branches[i];
+    before[i] = branch->indicator;
+    if (!has_sum_of_velocities(graph, branch->indicator)) continue;
+    const char *name = graph_symbol_of(graph, branch->mode)->name;
+    branch->moves = mode_of_equal(switches, before, i);
+    if (branch->moves == ZERO)
+      branch->moves = append_resting(model, name, (struct RestingVelocity){.kind = RESTING_INDICATOR});
+    substitute(graph, &branch->indicator, 1, without, &rest);
+    branch->indicator = choose_node(graph, branch->moves, branch->indicator, rest);
+  }
+}
+
 void replace_resting_velocities(struct Model *model) {
   if (model->switches.friction_count + model->switches.contact_count == 0) return;
   replace_in_indicators(model);
+  replace_sums(model);
   replace_velocities(model);
 }

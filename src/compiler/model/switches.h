@@ -5,10 +5,12 @@
 
 #include "algebra/graph.h"
 #include "passage.h"
+#include "resting.h"
 
 /* A piecewise expression's branch. The mode is the sign of the indicator, -1, 0 or 1. */
 struct Branch {
   Node mode, indicator;
+  Node moves;           /* mode of the sum of velocities in the indicator; ZERO for none */
   bool is_last_sign;    /* of an event's expression: while the indicator rests at 0, the mode keeps its sign */
   bool is_of_friction;  /* the mode of a friction with a prescribed velocity; results keep the mode itself */
   unsigned kinds;       /* of the symbols on which the mode depends, also through other modes */
@@ -62,13 +64,14 @@ struct Remainder {
 };
 
 /*
- * A velocity that conditions, functions or outputs use. Its mode is 1 while it is free, and 0 at rest: sticking
- * frictions, closed contacts and constraints keep it at 0, or its prescribed motion dwells.
+ * A velocity that conditions, functions or outputs use, or a sum of velocities in the indicator of a branch. Its mode is
+ * positive while it moves, and 0 at rest: sticking frictions, closed contacts and constraints keep it at 0, or its
+ * prescribed motion dwells.
  */
 struct RestingVelocity {
+  enum RestingKind kind;
   Node mode;
-  size_t coordinate;
-  bool is_prescribed; /* its motion is */
+  size_t coordinate; /* unless RESTING_INDICATOR: branches have its mode */
 };
 
 /* An assignment of an event, to a coordinate, a velocity or a mode. */

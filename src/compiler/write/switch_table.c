@@ -74,8 +74,8 @@ static void write_resting(FILE *file, const struct SwitchTable *metadata) {
         "static const struct RestingMetadata resting_metadata[] = {",
         file);
   for (size_t i = 0; i < metadata->resting_count; i++)
-    fprintf(file, "{%zu, %zu, %s}, ", metadata->resting[i].mode, metadata->resting[i].coordinate,
-            name_of(metadata->resting[i].is_prescribed));
+    fprintf(file, "{%d, %zu, %zu}, ", (int)metadata->resting[i].kind, metadata->resting[i].mode,
+            metadata->resting[i].index);
   fputs("};\n\n", file);
 }
 

@@ -233,7 +233,7 @@ void branches_guess(struct Instance *instance) {
   for (size_t i = 0; i < switches->contact_count; i++) instance->parameter[switches->contacts[i].mode] = 0.0;
   for (size_t i = 0; i < switches->friction_count; i++)
     instance->parameter[switches->frictions[i].mode] = instance->parameter[switches->frictions[i].reported] = 1.0;
-  for (size_t i = 0; i < switches->resting_count; i++) instance->parameter[switches->resting[i].mode] = 1.0;
+  for (size_t i = 0; i < switches->resting_count; i++) instance->parameter[switches->resting[i].mode] = VELOCITY_MOVES;
   guess_branches(instance);
   if (switches->plane_count > 0) switches->friction_laws->guess(instance);
 }

@@ -42,9 +42,9 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
       {&resolution->first_mode, switches->contact_count + switches->friction_count},
       {&resolution->takes_part, switches->contact_count + switches->friction_count},
       {&resolution->moves, switches->resting_count},
-      {&resolution->drove, switches->resting_count},
       {&resolution->probe_input, switches->resting_count > 0 ? lagrangian.input_count : 0},
       {&resolution->probe_acceleration, switches->resting_count > 0 ? rows_of_matrix() : 0},
+      {&resolution->probe_indicators, switches->resting_count > 0 ? 3 * indicators : 0},
       {&resolution->energy, switches->energy_count},
       {&resolution->acceleration, rows_of_matrix()},
       {&resolution->kept_modes, switches->mode_count},
@@ -167,8 +167,6 @@ bool resolution_evaluate(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++)
     resolution->force_error_bound[i] = factor * fabs(resolution->force_error_bound[i] - holding_force(resolution, i));
   take_rounding_bounds(resolution);
-  for (size_t i = 0; i < resolution->switches->resting_count && is_first; i++)
-    resolution->drove[i] = resolution_accelerations(resolution)[resolution->switches->resting[i].coordinate];
   resolution->is_evaluated = true;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
     measure_velocity(resolution, contact_slot(resolution->switches, i, CONTACT_RATE));

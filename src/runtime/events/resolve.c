@@ -56,15 +56,19 @@ static const char *report_friction_modes(struct Resolution *resolution, bool *ag
   return laws == NULL || laws->report(resolution, again) ? NULL : no_accelerations;
 }
 
-/* Finds which velocities rest; sets *again if any stops or leaves rest. */
+/* Finds which velocities rest, before pieces switch by them; sets *again if any stops or leaves rest. */
 static const char *find_resting_velocities(struct Resolution *resolution, bool *again) {
   const struct SwitchTable *switches = resolution->switches;
   if (switches->find_resting == NULL) return NULL;
   switches->find_resting(resolution);
   for (size_t i = 0; i < switches->resting_count; i++) {
-    if (resolution->moves[i] == mode_of(resolution, switches->resting[i].mode)) continue;
-    resolution_set_mode(resolution, switches->resting[i].mode, resolution->moves[i]);
-    if (resolution->moves[i] == 0.0) resolution->has_rested = true;
+    size_t mode = switches->resting[i].mode;
+    bool rests = resolution->moves[i] == VELOCITY_RESTS, rested = mode_of(resolution, mode) == VELOCITY_RESTS;
+    /* No function distinguishes velocities that accelerate from others that move. */
+    resolution->instance->parameter[mode] = resolution->moves[i];
+    if (rests == rested) continue;
+    resolution_set_mode(resolution, mode, resolution->moves[i]);
+    if (rests) resolution->has_rested = true;
     else resolution->has_left_rest = true;
     *again = true;
   }
@@ -74,9 +78,11 @@ static const char *find_resting_velocities(struct Resolution *resolution, bool *
 /* Sets velocities at rest to 0: projections leave rounding errors, and methods errors in prescribed motions. */
 static void set_resting_velocities(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  for (size_t i = 0; i < switches->resting_count && resolution->changed; i++)
-    if (mode_of(resolution, switches->resting[i].mode) == 0.0)
-      resolution->state[lagrangian.coordinate_count + switches->resting[i].coordinate] = 0.0;
+  for (size_t i = 0; i < switches->resting_count && resolution->changed; i++) {
+    const struct RestingMetadata *resting = &switches->resting[i];
+    if (resting->kind != RESTING_INDICATOR && mode_of(resolution, resting->mode) == VELOCITY_RESTS)
+      resolution->state[lagrangian.coordinate_count + resting->index] = 0.0;
+  }
 }
 
 /*
@@ -93,8 +99,8 @@ static const char *switch_last_signs(struct Resolution *resolution, bool *again)
 
 /* The mechanisms that a round tries in turn, up to the first that changes something. */
 static const char *(*const actions[])(struct Resolution *resolution, bool *again) = {
-    act_by_contacts,       switch_pieces,           act_by_frictions,  resolve_contact_forces, let_touching_share,
-    report_friction_modes, find_resting_velocities, switch_last_signs, conditions_happen};
+    act_by_contacts,    find_resting_velocities, switch_pieces,     act_by_frictions, resolve_contact_forces,
+    let_touching_share, report_friction_modes,   switch_last_signs, conditions_happen};
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
 
 /* Makes one round; sets *again if it changed something. */

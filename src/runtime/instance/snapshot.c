@@ -133,7 +133,7 @@ static bool are_modes(const char *parameters) {
   for (size_t i = 0; i < switches->friction_count; i++)
     if (!is_whole(parameters, switches->frictions[i].mode, -1.0, 1.0)) return false;
   for (size_t i = 0; i < switches->resting_count; i++)
-    if (!is_whole(parameters, switches->resting[i].mode, 0.0, 1.0)) return false;
+    if (!is_whole(parameters, switches->resting[i].mode, VELOCITY_RESTS, VELOCITY_ACCELERATES)) return false;
   return true;
 }
 

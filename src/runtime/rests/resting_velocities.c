@@ -3,12 +3,15 @@
  * the row space of J and the right sides give it the value 0. The projection of velocities onto the constraints, v -
  * M^-1 J^T (J M^-1 J^T)^+ (J v - b), decides that without further algebra: it takes v_i from any v to 0. So random
  * velocities are projected, once at the present point and once at a point nearby, which the motion may reach without an
- * event: coordinates moved along the projected velocities, another time, other inputs and states. Velocities that the
- * coordinates, time or inputs make 0 only for an instant are not at rest. A decision costs two projections, with
- * probability 1 it is right but for rounding errors.
+ * event: coordinates moved along the projected velocities, another time, other states, and inputs that may vary.
+ * Velocities that the coordinates, time or inputs make 0 only for an instant are not at rest. A decision costs two
+ * projections, with probability 1 it is right but for rounding errors.
+ *
+ * The indicator of a branch that is linear in several velocities, sum_i a_i v_i + r, has the value r if the projection
+ * takes the sum to 0: the same projections decide that.
  *
  * A prescribed velocity rests if it is 0, and its acceleration is 0 here and nearby. The error of the method may leave
- * it other than 0 where a drive stops.
+ * it other than 0 where a drive stops; so it also rests if it is small, and accelerated until the event.
  */
 #include "rests/resting_velocities.h"
 
@@ -40,6 +43,12 @@ struct Probe {
   uint32_t seed;
 };
 
+static bool has_kind(const struct SwitchTable *switches, enum RestingKind kind) {
+  bool has = false;
+  for (size_t i = 0; i < switches->resting_count; i++) has |= switches->resting[i].kind == kind;
+  return has;
+}
+
 /* Returns a random number of size 0.5 to 1. Constants by D. E. Knuth and H. W. Lewis. */
 static double random_number(struct Probe *probe) {
   probe->seed = probe->seed * 1664525u + 1013904223u;
@@ -54,40 +63,71 @@ static struct Probe probe_here(struct Resolution *resolution) {
   return probe;
 }
 
+/*
+ * True if the input may change without an event: importers of model exchange may set it at any time, and inputs in
+ * constraints become polynomials at the start of a communication step. Others change by events.
+ */
+static bool may_vary(const struct Instance *instance, size_t input) {
+  const struct ConstraintTable *constraints = &lagrangian.constraints;
+  bool varies = instance->kind == KIND_MODEL_EXCHANGE;
+  for (size_t i = 0; i < constraints->prescribed_input_count && !varies; i++) {
+    const struct PrescribedInput *prescribed = &constraints->prescribed_inputs[i];
+    varies = input >= prescribed->input && input <= prescribed->input + prescribed->rates;
+  }
+  return varies;
+}
+
+/* Sets the probe's inputs to those of a later time, and moves the ones that may vary. */
+static void move_inputs(struct Probe *probe) {
+  struct Instance *instance = probe->resolution->instance;
+  double *input = probe->resolution->probe_input;
+  solver_move_point(instance, &probe->point, probe->point.time + later, probe->state);
+  for (size_t i = 0; i < lagrangian.input_count; i++) {
+    double value = probe->point.input[i], distance = nearby * fmax(1.0, fabs(value)) * random_number(probe);
+    input[i] = may_vary(instance, i) ? value + distance : value;
+  }
+  probe->point.input = input;
+}
+
 /* Moves the probe to the point nearby, with coordinates along its velocities. */
 static void move_nearby(struct Probe *probe) {
   size_t n = lagrangian.coordinate_count;
-  double *input = probe->resolution->probe_input, largest = 0.0;
+  double largest = 0.0;
   for (size_t i = 0; i < n; i++) largest = fmax(largest, fabs(probe->state[n + i]) / scale_of(probe->state, i));
   for (size_t i = 0; i < n && largest > 0.0; i++) probe->state[i] += nearby / largest * probe->state[n + i];
   for (size_t i = 2 * n; i < lagrangian.state_count; i++)
     probe->state[i] += nearby * scale_of(probe->state, i) * random_number(probe);
-  for (size_t i = 0; i < lagrangian.input_count; i++)
-    input[i] = probe->point.input[i] + nearby * fmax(1.0, fabs(probe->point.input[i])) * random_number(probe);
-  probe->point.input = input;
-  probe->point.time += later;
+  move_inputs(probe);
 }
 
 /* True if the prescribed velocity may be at rest: it is 0, or as small as the error of an integration. */
 static bool is_small(const struct Resolution *resolution, size_t number) {
   const struct RestingMetadata *resting = &resolution->switches->resting[number];
-  size_t velocity = lagrangian.coordinate_count + resting->coordinate;
+  size_t velocity = lagrangian.coordinate_count + resting->index;
   double size = fabs(resolution->state[velocity]);
-  bool has_stopped = resolution->drove[number] != 0.0 || mode_of(resolution, resting->mode) == 0.0;
+  bool has_stopped = mode_of(resolution, resting->mode) != VELOCITY_MOVES;
   double share = resolution->occasion == IN_EXCHANGE ? integrated_rest_in_exchange : integrated_rest;
   double error = share * resolution->instance->fmu_state->tolerance * scale_of(resolution->state, velocity);
   return size == 0.0 || (resolution->occasion != AT_START && has_stopped && size <= error);
 }
 
-/* Lets prescribed velocities move whose accelerations at the probe are not 0. */
-static void find_driven(struct Probe *probe) {
-  struct Resolution *resolution = probe->resolution;
+/* Marks prescribed velocities that accelerate; NULL for accelerations that do not exist. */
+static void find_driven(struct Resolution *resolution, const double *acceleration) {
   const struct SwitchTable *switches = resolution->switches;
-  double *acceleration = resolution->probe_acceleration;
-  bool exist = lagrangian.constraints.accelerations(&probe->point, acceleration) == 0;
   for (size_t i = 0; i < switches->resting_count; i++)
-    if (switches->resting[i].is_prescribed && !(exist && acceleration[switches->resting[i].coordinate] == 0.0))
-      resolution->moves[i] = 1.0;
+    if (switches->resting[i].kind == RESTING_DRIVE &&
+        (acceleration == NULL || acceleration[switches->resting[i].index] != 0.0))
+      resolution->moves[i] = VELOCITY_ACCELERATES;
+}
+
+/* Finds the prescribed velocities that accelerate at the present point or nearby. */
+static void find_accelerating(struct Resolution *resolution) {
+  double *acceleration = resolution->probe_acceleration;
+  struct Probe probe = probe_here(resolution);
+  find_driven(resolution, resolution_accelerations(resolution));
+  move_nearby(&probe);
+  bool exist = lagrangian.constraints.accelerations(&probe.point, acceleration) == 0;
+  find_driven(resolution, exist ? acceleration : NULL);
 }
 
 /* Gives the probe random velocities, but 0 to prescribed ones at rest. */
@@ -96,8 +136,29 @@ static void scatter_velocities(struct Probe *probe) {
   size_t n = lagrangian.coordinate_count;
   for (size_t i = 0; i < n; i++) probe->state[n + i] = lagrangian.steps.nominal[n + i] * random_number(probe);
   for (size_t i = 0; i < switches->resting_count; i++)
-    if (switches->resting[i].is_prescribed && probe->resolution->moves[i] == 0.0)
-      probe->state[n + switches->resting[i].coordinate] = 0.0;
+    if (switches->resting[i].kind == RESTING_DRIVE && probe->resolution->moves[i] == VELOCITY_RESTS)
+      probe->state[n + switches->resting[i].index] = 0.0;
+}
+
+/* Evaluates indicators at the probe; those with sums of velocities do not depend on the accelerations. */
+static void find_indicators(const struct Probe *probe, size_t row) {
+  const struct Resolution *resolution = probe->resolution;
+  double *indicator = resolution->probe_indicators + row * indicator_count(resolution->switches);
+  resolution->switches->indicators(&probe->point, resolution->acceleration, indicator);
+}
+
+/* The rows of indicators: without velocities, with random ones, and with these after the projection. */
+enum { WITHOUT, RANDOM, PROJECTED };
+
+/* True if the projection has taken a velocity to 0, or the sum of velocities in an indicator. */
+static bool has_vanished(const struct Probe *probe, const struct RestingMetadata *resting) {
+  const struct Resolution *resolution = probe->resolution;
+  size_t velocity = lagrangian.coordinate_count + resting->index, count = indicator_count(resolution->switches);
+  const double *indicator = resolution->probe_indicators + resting->index;
+  if (resting->kind != RESTING_INDICATOR)
+    return fabs(probe->state[velocity]) <= projected_rest * lagrangian.steps.nominal[velocity];
+  double rest = indicator[WITHOUT * count], size = fabs(indicator[RANDOM * count] - rest);
+  return fabs(indicator[PROJECTED * count] - rest) <= projected_rest * size;
 }
 
 /* Projects random velocities at the probe, and lets those move that do not become 0. */
@@ -105,31 +166,47 @@ static void find_moving(struct Probe *probe) {
   struct Resolution *resolution = probe->resolution;
   const struct SwitchTable *switches = resolution->switches;
   size_t n = lagrangian.coordinate_count;
+  bool has_sums = has_kind(switches, RESTING_INDICATOR);
+  memset(probe->state + n, 0, n * sizeof *probe->state);
+  if (has_sums) find_indicators(probe, WITHOUT);
   scatter_velocities(probe);
+  if (has_sums) find_indicators(probe, RANDOM);
   bool exist = lagrangian.constraints.correct_velocities(&probe->point, resolution->correction) == 0;
   for (size_t i = 0; i < n && exist; i++) probe->state[n + i] += resolution->correction[i];
-  for (size_t i = 0; i < switches->resting_count; i++) {
-    size_t velocity = n + switches->resting[i].coordinate;
-    bool rests = exist && fabs(probe->state[velocity]) <= projected_rest * lagrangian.steps.nominal[velocity];
-    if (!rests) resolution->moves[i] = 1.0;
+  if (has_sums) find_indicators(probe, PROJECTED);
+  for (size_t i = 0; i < switches->resting_count; i++)
+    if (!exist || !has_vanished(probe, &switches->resting[i]))
+      resolution->moves[i] = fmax(resolution->moves[i], VELOCITY_MOVES);
+}
+
+/* Finds what moves at the present point and nearby. Indicators show all velocities meanwhile. */
+static void find_moving_nearby(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  struct Instance *instance = resolution->instance;
+  bool hides = has_kind(switches, RESTING_INDICATOR);
+  if (hides) resolution_keep_modes(resolution);
+  for (size_t i = 0; i < switches->resting_count && hides; i++)
+    instance->parameter[switches->resting[i].mode] = VELOCITY_MOVES;
+  instance->parameter_constants_are_stale |= hides;
+  if (evaluate_prepare(instance) == STATUS_DONE) {
+    struct Probe probe = probe_here(resolution);
+    find_moving(&probe);
+    move_nearby(&probe);
+    find_moving(&probe);
   }
+  if (hides) resolution_restore_modes(resolution);
 }
 
 void resting_find(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  bool may_rest = solver_has_constraints(resolution->instance);
+  bool may_rest = solver_has_constraints(resolution->instance), has_drives = has_kind(switches, RESTING_DRIVE);
   for (size_t i = 0; i < switches->resting_count; i++) {
-    bool is_prescribed = switches->resting[i].is_prescribed;
-    resolution->moves[i] = is_prescribed ? !is_small(resolution, i) : !may_rest;
-    may_rest |= is_prescribed && resolution->moves[i] == 0.0;
+    bool is_prescribed = switches->resting[i].kind == RESTING_DRIVE;
+    bool moves = is_prescribed ? !is_small(resolution, i) : !may_rest;
+    resolution->moves[i] = moves ? VELOCITY_MOVES : VELOCITY_RESTS;
+    may_rest |= is_prescribed && !moves;
   }
-  if (!may_rest || evaluate_prepare(resolution->instance) != STATUS_DONE) return;
-  struct Probe probe = probe_here(resolution);
-  find_driven(&probe);
-  move_nearby(&probe);
-  find_driven(&probe);
-  probe = probe_here(resolution);
-  find_moving(&probe);
-  move_nearby(&probe);
-  find_moving(&probe);
+  if (!(may_rest || has_drives) || evaluate_prepare(resolution->instance) != STATUS_DONE) return;
+  if (has_drives) find_accelerating(resolution);
+  if (may_rest) find_moving_nearby(resolution);
 }

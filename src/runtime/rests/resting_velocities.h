@@ -4,7 +4,7 @@
 
 #include "events/resolution.h"
 
-/* Sets resolution->moves of each resting velocity: 0 if it rests, else 1. */
+/* Sets resolution->moves of each resting velocity to its mode. */
 void resting_find(struct Resolution *resolution);
 
 #endif
