@@ -329,5 +329,7 @@ def sweep(path, folder, words, runner, compile_ensemble):
             count = simulate_with_dask(client, *task) if client else simulate_in_threads(*task, ensemble)
             parts.join(output, count)
     except OSError as problem:
-        raise Problem(f"{problem}; finished runs are kept beside {output}, and the same command continues with them") from None
+        reason = os.strerror(problem.errno) if problem.errno else problem
+        remedy = "expected a writable folder with free space, in which the same command continues with the finished runs that are kept beside it"
+        raise Problem(f"{output} cannot be written: {reason}; {remedy}") from None
     return output

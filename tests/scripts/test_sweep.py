@@ -104,7 +104,8 @@ def interrupted(output, *words):
     result = subprocess.run(command(output, *words), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
     whole.unlink(missing_ok=True)
     (line,) = result.stderr.splitlines()
-    assert result.returncode == 1 and re.match("scripts/sweep: .*No space left on device.*the same command continues", line), line
+    expected = "cannot be written: No space left on device; expected a writable folder with free space, in which the same command continues"
+    assert result.returncode == 1 and line.startswith(f"scripts/sweep: {output} {expected}"), line
     (folder,) = output.parent.glob("*.parts-*")
     return folder
 
@@ -121,7 +122,7 @@ def test_a_full_disk_loses_nothing(tmp_path):
     (folder / "000002.part").symlink_to("/dev/full")
     result = subprocess.run(command(output, *WORDS), capture_output=True, text=True, env={"PYTHONPATH": str(ROOT / "scripts")})
     (line,) = result.stderr.splitlines()
-    assert result.returncode == 1 and "No space left on device" in line
+    assert result.returncode == 1 and f"{output} cannot be written: No space left on device; expected" in line
     (folder / "000002.part").unlink()
     table, text = sweep(output, *WORDS)
     assert "750 of 1000 runs are there already" in text and table["run"] == list(range(1000))
