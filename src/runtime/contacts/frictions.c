@@ -282,7 +282,7 @@ bool frictions_report(struct Resolution *resolution, bool *again) {
     if (is_planar) i++; /* the friction across has the same mode */
     if (is_constrained) mode = 0.0;
     if (mode == mode_of(resolution, metadata->reported)) continue;
-    resolution_set_mode(resolution, metadata->reported, mode);
+    resolution_set_observing_mode(resolution, metadata->reported, mode);
     *again = true;
   }
   return true;

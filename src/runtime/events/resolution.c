@@ -183,10 +183,14 @@ double resolution_error_bound(const struct Resolution *resolution, size_t slot, 
   return resolution->error_bound[slot] + (isfinite(change) ? change : 0.0);
 }
 
-void resolution_set_mode(struct Resolution *resolution, size_t mode, double value) {
+void resolution_set_observing_mode(struct Resolution *resolution, size_t mode, double value) {
   resolution->instance->parameter[mode] = value;
   resolution->instance->parameter_constants_are_stale = true;
   resolution->changed = true;
+}
+
+void resolution_set_mode(struct Resolution *resolution, size_t mode, double value) {
+  resolution_set_observing_mode(resolution, mode, value);
   resolution->last.friction = resolution->switches->friction_count;
 }
 

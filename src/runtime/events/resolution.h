@@ -51,7 +51,7 @@ struct Resolution {
   bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
   int impacts, lifts;
   struct {
-    size_t friction;        /* the last one to switch, if nothing else changed since; else friction_count */
+    size_t friction;        /* the last one to switch, if no force changed since; else friction_count */
     double mode, certainty; /* its mode before, and how many rounding errors supported leaving it */
   } last;
 };
@@ -178,6 +178,9 @@ static inline double mode_of(const struct Resolution *resolution, size_t mode) {
 
 /* Sets a mode, and notes that something changed. */
 void resolution_set_mode(struct Resolution *resolution, size_t mode, double value);
+
+/* Sets a mode on which only results and indicators depend, so that the forces of the last round remain. */
+void resolution_set_observing_mode(struct Resolution *resolution, size_t mode, double value);
 
 /* Save and restore the modes, around trials of others. */
 void resolution_keep_modes(struct Resolution *resolution);
