@@ -190,7 +190,7 @@ struct PlaneMetadata {
 struct RestingMetadata {
   enum RestingKind kind;
   size_t mode;  /* enum RestingMode */
-  size_t index; /* of the coordinate, or of the branch */
+  size_t index; /* of the coordinate, or in resting_sums */
 };
 
 /* An assignment of an event, to a state or a mode. */
@@ -262,6 +262,8 @@ struct SwitchTable {
   size_t plane_count;
   const struct RestingMetadata *resting; /* NULL if there are none */
   size_t resting_count;
+  /* Computes the sums of velocities of RESTING_SUM; NULL without any. */
+  void (*resting_sums)(const struct Point *point, const Real *acceleration, Real *sum);
   void (*find_resting)(struct Resolution *resolution); /* rests/resting_velocities.h; NULL without such velocities */
   /*
    * Branches whose indicators depend only on time, parameters and modes: affine_count that are affine in time, others.

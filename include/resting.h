@@ -5,7 +5,7 @@
 enum RestingKind {
   RESTING_VELOCITY, /* of a coordinate */
   RESTING_DRIVE,    /* of a coordinate with a prescribed motion */
-  RESTING_INDICATOR /* the velocities in the indicator of a branch */
+  RESTING_SUM       /* of velocities, in the indicator of a branch */
 };
 
 /* Modes of such a velocity. The acceleration of a drive that moves is 0 here and nearby. */

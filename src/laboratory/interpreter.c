@@ -105,6 +105,10 @@ static void switching_values(const struct Point *point, const double *accelerati
   fill_with(FUNCTION_SWITCHING_VALUES, point, acceleration, value);
 }
 
+static void resting_sums(const struct Point *point, const double *acceleration, double *sum) {
+  fill_with(FUNCTION_RESTING_SUMS, point, acceleration, sum);
+}
+
 /* Binds the spaces of series, which are arrays of numbers for the interpreter. */
 static void set_rows(struct Frame *frame, const double *time, const void *input, const void *x, const void *w) {
   frame->base[SPACE_TIME_ROW] = (double *)time;
@@ -216,5 +220,6 @@ void set_functions(struct Lagrangian *system, struct SwitchTable *switches, cons
   SET(switches->indicators, FUNCTION_INDICATORS, indicators);
   SET(switches->rounding_bounds, FUNCTION_ROUNDING_BOUNDS, rounding_bounds);
   SET(switches->switching_values, FUNCTION_SWITCHING_VALUES, switching_values);
+  SET(switches->resting_sums, FUNCTION_RESTING_SUMS, resting_sums);
   SET(switches->watched_limit, FUNCTION_WATCHED_LIMIT, watched_limit);
 }

@@ -85,7 +85,8 @@ DISKS = f"""<parameter name="j" start="1.1"/>
   <force coordinate="a">{PUSH}</force>
   <mode name="ahead" start="-1"/><mode name="behind" start="-1"/>
   <event when="w1 - w3 > 0"><set mode="ahead">time</set></event><event when="w1 - w3 &lt; 0"><set mode="behind">time</set></event>
-  <output name="speed">w1</output>
+  <output name="speed">w1</output><output name="order">sign(w1 - w3)</output><output name="distance">abs(3*w3 - 3*w1)</output>
+  <output name="which">if(w1 &lt; w3, 1, if(w1 - w3 > 0, 2, 3))</output>
 """
 DISK_LIMITS = {"If": "if(w1 - w3 > 0, 4, 1)", "Back": "if(w3 - w1 > 0, 4, 1)", "Sign": "2.5 + 1.5*sign(w1 - w3)"}
 INERTIAS = [0.3, 0.7, 1.1, 1.7, 2.3, 3.1]
@@ -211,7 +212,8 @@ def speed_of_disks(law, j):
 def test_sums_of_velocities_at_rest(open_fmu, law, method):
     for j in INERTIAS:
         instance = open_fmu(name_of("Disks", law, method)).initialize({"j": j})
-        instance.run(4, 0.1, "speed")
+        for time, *decisions in instance.run(4, 0.1, "order", "distance", "which"):
+            assert decisions == [0, 0, 3], (j, time)
         assert instance.get("speed") == pytest.approx(speed_of_disks(law, j), abs=1e-7), j
         assert instance.get("ahead", "behind") == [-1, -1], j
 
@@ -223,10 +225,16 @@ def test_sums_of_velocities_at_rest_elsewhere(law):
     results, _ = ensemble(name, ["j"], ["speed"], [4.0]).run([[j] for j in INERTIAS])
     for j, ((speed,),) in zip(INERTIAS, results):
         rows = fmpy.simulate_fmu(str(fmu.archive(name)), fmi_type="ModelExchange", stop_time=4, output_interval=0.1, relative_tolerance=1e-9,
-                                 start_values={"j": j}, output=["speed", "ahead", "behind"])  # fmt: skip
+                                 start_values={"j": j}, output=["speed", "ahead", "behind", "order", "distance", "which"])  # fmt: skip
         assert speed == pytest.approx(speed_of_disks(law, j), abs=1e-7), j
         assert rows["speed"][-1] == pytest.approx(speed_of_disks(law, j), abs=5e-6), j
         assert (rows["ahead"][-1], rows["behind"][-1]) == (-1, -1), j
+        assert not rows["order"].any() and not rows["distance"].any() and set(rows["which"]) == {3}, j
+
+
+def test_pages_show_outputs_as_written():
+    page = (fmu.unpacked(name_of("Disks", "If")) / "documentation" / "index.html").read_text()
+    assert "order = sign(w1 - w3)<" in page and "speed = w1<" in page and ".moves" not in page
 
 
 def test_a_velocity_that_is_0_for_an_instant_is_not_at_rest(open_fmu):

@@ -191,6 +191,35 @@ Node replacement_of(const struct Graph *graph, const Node *replacements, Node sy
   return replacements[graph->vertices[symbol].left];
 }
 
+static Node with_operands(struct Graph *graph, enum Operation operation, Node left, Node right) {
+  switch (operation) {
+  case ADD: return add(graph, left, right);
+  case MULTIPLY: return multiply(graph, left, right);
+  case POWER: return power(graph, left, right);
+  default: return function(graph, operation, left, right);
+  }
+}
+
+Node rebuild(const struct Rebuilding *rebuilding, Node node) {
+  struct Graph *graph = rebuilding->graph;
+  struct Cone *cone = cone_create();
+  cone_collect(cone, graph, &node, 1);
+  graph_work(graph, cone->work);
+  Node *mapped = allocate(cone->count, sizeof *mapped);
+  for (size_t index = 0; index < cone->count; index++) {
+    const struct Vertex vertex = graph->vertices[cone->nodes[index]];
+    int arity = operation_arity(vertex.operation);
+    Node left = arity > 0 ? mapped[cone_slot(cone, vertex.left)] : ZERO;
+    Node right = arity > 1 ? mapped[cone_slot(cone, vertex.right)] : ZERO, other = cone->nodes[index];
+    bool is_replaced = arity > 0 && rebuilding->replace(rebuilding->context, vertex.operation, left, right, &other);
+    mapped[index] = arity == 0 || is_replaced ? other : with_operands(graph, vertex.operation, left, right);
+  }
+  Node result = mapped[cone_slot(cone, node)];
+  release(mapped);
+  cone_release(cone);
+  return result;
+}
+
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results) {
   struct Cone *cone = graph->cone;
   cone_collect(cone, graph, targets, count);
@@ -204,10 +233,7 @@ void substitute(struct Graph *graph, const Node *targets, size_t count, const No
     switch (vertex.operation) {
     case CONSTANT: mapped[index] = node; break;
     case SYMBOL: mapped[index] = replacements[vertex.left]; break;
-    case ADD: mapped[index] = add(graph, left, right); break;
-    case MULTIPLY: mapped[index] = multiply(graph, left, right); break;
-    case POWER: mapped[index] = power(graph, left, right); break;
-    default: mapped[index] = function(graph, vertex.operation, left, right); break;
+    default: mapped[index] = with_operands(graph, vertex.operation, left, right); break;
     }
   }
   for (size_t i = 0; i < count; i++) results[i] = mapped[cone_slot(cone, targets[i])];

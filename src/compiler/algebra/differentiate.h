@@ -59,6 +59,17 @@ Node *own_symbols(const struct Graph *graph);
 /* Returns the element of a symbol in replacements or seeds. */
 Node replacement_of(const struct Graph *graph, const Node *replacements, Node symbol);
 
+/* Replaces operations, from the leaves on. */
+struct Rebuilding {
+  struct Graph *graph;
+  void *context;
+  /* Sets *result in place of an operation with rebuilt operands; false if the operation stays. */
+  bool (*replace)(void *context, enum Operation operation, Node left, Node right, Node *result);
+};
+
+/* Returns the node with its operations replaced. `replace` may use the graph's cone. */
+Node rebuild(const struct Rebuilding *rebuilding, Node node);
+
 /* Replaces each symbol s in the targets by replacements[s]; one element for each symbol of the graph. */
 void substitute(struct Graph *graph, const Node *targets, size_t count, const Node *replacements, Node *results);
 

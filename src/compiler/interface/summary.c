@@ -9,6 +9,12 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 #include "mechanics/switching.h"
+#include "model/resting_velocities.h"
+
+/* Returns the expression without the modes of branches and of velocities at rest. */
+static Node as_written(const struct Model *model, Node node) {
+  return without_rests(model, without_branches(model, node));
+}
 
 static void add_name(struct NodeNames *names, Node node, const char *name) {
   if (names->of[node] != NULL) return;
@@ -24,7 +30,7 @@ static void add_names(struct NodeNames *names, const struct Model *model, const 
     if (graph->vertices[node].operation == SYMBOL || graph_is_constant(graph, node) || names->of[node] != NULL)
       continue;
     add_name(names, node, list->items[i].name);
-    add_name(names, without_branches(model, node), list->items[i].name);
+    add_name(names, as_written(model, node), list->items[i].name);
     if (list->items[i].shown != ZERO) add_name(names, list->items[i].shown, list->items[i].name);
   }
 }
@@ -33,8 +39,8 @@ static void add_names(struct NodeNames *names, const struct Model *model, const 
 static struct NodeNames author_names(const struct Model *model) {
   const struct Graph *graph = model->graph;
   for (size_t i = 0; i < model->definitions.count; i++) /* makes all nodes before they are counted */
-    without_branches(model, model->definitions.items[i].node);
-  for (size_t i = 0; i < model->calculated.count; i++) without_branches(model, model->calculated.items[i].node);
+    as_written(model, model->definitions.items[i].node);
+  for (size_t i = 0; i < model->calculated.count; i++) as_written(model, model->calculated.items[i].node);
   struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};
   names.named = allocate(SHOWN_LIMIT + 2, sizeof *names.named);
   add_names(&names, model, &model->calculated);
@@ -80,7 +86,7 @@ static Node inertial_side(const struct Model *model, const struct Equations *equ
   if (equations->explicit_form) return model->unknowns.accelerations[i];
   const struct InertiaBlock *block = inertia_block_of(equations->inertia, i);
   Node sum = ZERO;
-  if (block->tree != NULL) return without_branches(model, product[i]);
+  if (block->tree != NULL) return as_written(model, product[i]);
   for (size_t k = 0; k < block->count; k++) {
     Node mass = shown_element(model, equations, i, block->coordinates[k]);
     sum = add(graph, sum, multiply(graph, mass, unknown_of_row(model, block->coordinates[k])));
@@ -90,7 +96,7 @@ static Node inertial_side(const struct Model *model, const struct Equations *equ
     if (loads->positions[k].column != i) continue;
     sum = add(graph, sum, constraint_force_along(graph, loads, k, model->unknowns.forces));
   }
-  return without_branches(model, sum);
+  return as_written(model, sum);
 }
 
 struct Summary *summary_create(const struct Model *model, const struct Equations *equations) {
@@ -100,10 +106,10 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   Node lagrangian = subtract(graph, model->energies.kinetic.node, model->energies.potential.node);
   *summary = (struct Summary){
       .names = names,
-      .lagrangian_kinetic = without_branches(model, model->energies.kinetic.node),
-      .kinetic = without_branches(model, equations->kinetic),
-      .potential = without_branches(model, model->linearized ? equations->potential : model->energies.potential.node),
-      .power = without_branches(model, equations->stated_power),
+      .lagrangian_kinetic = as_written(model, model->energies.kinetic.node),
+      .kinetic = as_written(model, equations->kinetic),
+      .potential = as_written(model, model->linearized ? equations->potential : model->energies.potential.node),
+      .power = as_written(model, equations->stated_power),
       .is_autonomous = !graph_depends_on(graph, lagrangian, STATE) &&
                        simplify_fraction(graph, derivative_by(graph, lagrangian, model->time)) == ZERO,
       .constraint_count = smaller(model->constraints.count, SHOWN_LIMIT),
@@ -117,21 +123,22 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
   const Node *product = product_of_trees(model, equations);
   for (size_t i = 0; i < summary->motion_count; i++) {
     summary->inertial[i] = inertial_side(model, equations, product, i);
-    summary->right_side[i] = without_branches(model, equations->right_side[i]);
+    summary->right_side[i] = as_written(model, equations->right_side[i]);
   }
   summary->constraints = allocate(summary->constraint_count, sizeof(Node));
   for (size_t i = 0; i < summary->constraint_count; i++)
-    summary->constraints[i] = without_branches(model, shown_constraint(model, i));
+    summary->constraints[i] = as_written(model, shown_constraint(model, i));
   summary->reactions = allocate(summary->reaction_count, sizeof(Node));
   for (size_t i = 0; i < summary->reaction_count; i++)
-    summary->reactions[i] = without_branches(model, equations->reactions[i]);
+    summary->reactions[i] = as_written(model, equations->reactions[i]);
   summary->rates = allocate(summary->rate_count, sizeof(Node));
   for (size_t i = 0; i < summary->rate_count; i++) {
     const struct Variable *state = &model->states.items[i];
     bool is_as_written = !model->linearized && !state->is_work;
-    summary->rates[i] = without_branches(model, is_as_written ? state->rate : equations->rates.nodes[i]);
+    Node rate = is_as_written ? state->rate : equations->rates.nodes[i];
+    summary->rates[i] = as_written(model, rate);
   }
   for (size_t i = 0; i < summary->output_count; i++)
-    summary->outputs[i] = without_branches(model, equations->outputs[i]);
+    summary->outputs[i] = as_written(model, equations->outputs[i]);
   return summary;
 }

@@ -360,6 +360,13 @@ static void find_timed(const struct Model *model, struct SwitchingExpressions *s
   }
 }
 
+static void fill_resting_sums(const struct Switches *switches, struct SwitchingExpressions *switching) {
+  switching->resting_sums = allocate(switches->resting_count, sizeof(Node));
+  for (size_t i = 0; i < switches->resting_count; i++)
+    if (switches->resting[i].kind == RESTING_SUM)
+      switching->resting_sums[switching->resting_sum_count++] = switches->resting[i].sum;
+}
+
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
   if (!has_switches(&model->switches) || is_motionless(model)) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
@@ -377,6 +384,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->values = values.nodes;
   switching->value_count = values.count;
   find_timed(model, switching);
+  fill_resting_sums(&model->switches, switching);
   fill_rounding_bounds(model, &counts, switching);
   return switching->indicator_count > 0 ? switching : NULL;
 }

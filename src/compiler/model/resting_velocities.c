@@ -37,6 +37,16 @@ static Node append_resting(struct Model *model, const char *name, struct Resting
   return resting.mode;
 }
 
+Node without_rests(const struct Model *model, Node node) {
+  const struct Switches *switches = &model->switches;
+  if (switches->resting_count == 0) return node;
+  Node *replacements = own_symbols(model->graph);
+  for (size_t i = 0; i < switches->resting_count; i++)
+    replacements[model->graph->vertices[switches->resting[i].mode].left] = ONE;
+  substitute(model->graph, &node, 1, replacements, &node);
+  return node;
+}
+
 /* --- Velocities of coordinates --- */
 
 /* Collects all that observes the motion: indicators of branches, assignments of events, outputs, rates of states. */
@@ -75,7 +85,7 @@ static void replace_velocities(struct Model *model) {
   append_resting_velocities(model);
   Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->resting_count; i++) {
-    if (switches->resting[i].kind == RESTING_INDICATOR) continue;
+    if (switches->resting[i].kind == RESTING_SUM) continue;
     Node velocity = model->velocities.items[switches->resting[i].coordinate].node;
     replacements[graph->vertices[velocity].left] = function(graph, GUARD, switches->resting[i].mode, velocity);
   }
@@ -112,40 +122,72 @@ static void replace_in_indicators(struct Model *model) {
 
 /* --- Sums of velocities in indicators, such as w1 - w3 --- */
 
-/* True if the value is a sum of several velocities with coefficients that do not depend on velocities, and a rest. */
-static bool has_sum_of_velocities(struct Graph *graph, Node value) {
-  if (graph_depends_on(graph, value, ACCELERATION)) return false;
+/*
+ * Returns the sum of several velocities, with coefficients that do not depend on velocities, from which the value differs
+ * by a term without velocities; ZERO if it is not such a sum.
+ */
+static Node sum_of_velocities(struct Graph *graph, Node value) {
+  if (graph_depends_on(graph, value, ACCELERATION)) return ZERO;
   const struct Gradient gradient = gradient_by_kinds(graph, value, OF_VELOCITIES);
-  bool is_linear = gradient.count > 1;
-  for (size_t i = 0; i < gradient.count; i++) is_linear &= !graph_depends_on(graph, gradient.values[i], VELOCITY);
-  return is_linear;
+  Node sum = ZERO;
+  for (size_t i = 0; i < gradient.count; i++) {
+    if (gradient.count == 1 || graph_depends_on(graph, gradient.values[i], VELOCITY)) return ZERO;
+    sum = add(graph, sum, multiply(graph, gradient.values[i], gradient.symbols[i]));
+  }
+  return sum;
 }
 
-/* Returns the mode of an equal indicator among the first branches; ZERO for none. */
-static Node mode_of_equal(const struct Switches *switches, const Node *indicators, size_t count) {
-  for (size_t i = 0; i < count; i++)
-    if (indicators[i] == indicators[count] && switches->branches[i].moves != ZERO) return switches->branches[i].moves;
-  return ZERO;
-}
-
-/* Frictions and constraints may keep a sum of moving velocities at 0. The indicator is then its value without them. */
-static void replace_sums(struct Model *model) {
-  struct Graph *graph = model->graph;
+/* Returns the mode of a sum of velocities; adds it if there is none. */
+static Node mode_of_sum(struct Model *model, Node sum, const char *name) {
   const struct Switches *switches = &model->switches;
-  Node *without = own_symbols(graph), *before = allocate(switches->branch_count, sizeof *before), rest;
+  for (size_t i = 0; i < switches->resting_count; i++)
+    if (switches->resting[i].kind == RESTING_SUM && switches->resting[i].sum == sum) return switches->resting[i].mode;
+  return append_resting(model, name, (struct RestingVelocity){.kind = RESTING_SUM, .sum = sum});
+}
+
+/* Returns the value without the velocities of a sum while they rest; the value itself if it has none. */
+static Node with_resting_sum(struct Model *model, Node value, const char *name) {
+  struct Graph *graph = model->graph;
+  Node sum = sum_of_velocities(graph, value), rest;
+  if (sum == ZERO) return value;
+  Node *without = own_symbols(graph);
   for (size_t i = 0; i < model->velocities.count; i++)
     without[graph->vertices[model->velocities.items[i].node].left] = ZERO;
+  substitute(graph, &value, 1, without, &rest);
+  return choose_node(graph, mode_of_sum(model, sum, name), value, rest);
+}
+
+/* Replaces the sum by whose sign an operation decides. */
+static bool replace_deciding_sum(void *context, enum Operation operation, Node left, Node right, Node *result) {
+  struct Model *model = context;
+  bool compares = operation == LESS, decides = operation == SIGN || operation == ABSOLUTE || operation == FLOOR;
+  if (!compares && !decides) return false;
+  Node value = compares ? subtract(model->graph, right, left) : left;
+  Node replaced = with_resting_sum(model, value, "a sum of velocities");
+  if (replaced == value) return false;
+  *result = function(model->graph, operation, compares ? ZERO : replaced, compares ? replaced : ZERO);
+  return true;
+}
+
+/*
+ * Frictions and constraints may keep a sum of moving velocities at 0. Replaces such sums in the indicators of branches,
+ * and where outputs and assignments decide without branches.
+ */
+static void replace_sums(struct Model *model) {
+  struct Switches *switches = &model->switches;
+  const struct Rebuilding rebuilding = {model->graph, model, replace_deciding_sum};
   for (size_t i = 0; i < switches->branch_count; i++) {
     struct Branch *branch = &switches->branches[i];
-    before[i] = branch->indicator;
-    if (!has_sum_of_velocities(graph, branch->indicator)) continue;
-    const char *name = graph_symbol_of(graph, branch->mode)->name;
-    branch->moves = mode_of_equal(switches, before, i);
-    if (branch->moves == ZERO)
-      branch->moves = append_resting(model, name, (struct RestingVelocity){.kind = RESTING_INDICATOR});
-    substitute(graph, &branch->indicator, 1, without, &rest);
-    branch->indicator = choose_node(graph, branch->moves, branch->indicator, rest);
+    const char *name = graph_symbol_of(model->graph, branch->mode)->name;
+    branch->indicator = with_resting_sum(model, branch->indicator, name);
   }
+  for (size_t i = 0; i < switches->event_count; i++)
+    for (size_t j = 0; j < switches->events[i].assignment_count; j++) {
+      Node *value = &switches->events[i].assignments[j].value;
+      *value = rebuild(&rebuilding, *value);
+    }
+  for (size_t i = 0; i < model->outputs.count; i++)
+    model->outputs.items[i].node = rebuild(&rebuilding, model->outputs.items[i].node);
 }
 
 void replace_resting_velocities(struct Model *model) {

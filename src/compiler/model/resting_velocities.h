@@ -10,6 +10,9 @@
  */
 void replace_resting_velocities(struct Model *model);
 
+/* Returns the expression before this replacement, as pages show it. */
+Node without_rests(const struct Model *model, Node node);
+
 /*
  * Replaces symbols in the indicators of branches, in assignments of events, in outputs and in rates of states.
  * replacements has one element for each symbol.

@@ -10,7 +10,6 @@
 /* A piecewise expression's branch. The mode is the sign of the indicator, -1, 0 or 1. */
 struct Branch {
   Node mode, indicator;
-  Node moves;           /* mode of the sum of velocities in the indicator; ZERO for none */
   bool is_last_sign;    /* of an event's expression: while the indicator rests at 0, the mode keeps its sign */
   bool is_of_friction;  /* the mode of a friction with a prescribed velocity; results keep the mode itself */
   unsigned kinds;       /* of the symbols on which the mode depends, also through other modes */
@@ -71,7 +70,8 @@ struct Remainder {
 struct RestingVelocity {
   enum RestingKind kind;
   Node mode;
-  size_t coordinate; /* unless RESTING_INDICATOR: branches have its mode */
+  size_t coordinate; /* unless RESTING_SUM */
+  Node sum;          /* of RESTING_SUM */
 };
 
 /* An assignment of an event, to a coordinate, a velocity or a mode. */

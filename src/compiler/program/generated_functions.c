@@ -246,6 +246,11 @@ static struct IrFunction *build_switching_values(const struct Program *program, 
   return ir_of_targets(generator, switching->values, switching->value_count);
 }
 
+static struct IrFunction *build_resting_sums(const struct Program *program, struct CodeGenerator *generator) {
+  const struct SwitchingExpressions *switching = program->equations->switching;
+  return ir_of_targets(generator, switching->resting_sums, switching->resting_sum_count);
+}
+
 static bool starts_follow(const struct Program *program) {
   return program->expressions->initial.count > 0;
 }
@@ -292,6 +297,10 @@ static bool has_limit(const struct Program *program) {
 
 static bool has_output_series(const struct Program *program) {
   return program->output_series != NULL;
+}
+
+static bool has_resting_sums(const struct Program *program) {
+  return switches(program) && program->equations->switching->resting_sum_count > 0;
 }
 
 static bool has_watched_limit(const struct Program *program) {
@@ -360,6 +369,9 @@ const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_SWITCHING_VALUES] = {"Values that determine the modes", "switching_values",
                                    "const struct Point *point, const Real *a, Real *value", "value", RETURNS_NOTHING,
                                    IN_ARGUMENT, IN_SWITCHES, switches, build_switching_values},
+    [FUNCTION_RESTING_SUMS] = {"Sums of velocities that may rest", "resting_sums",
+                               "const struct Point *point, const Real *a, Real *sum", "sum", RETURNS_NOTHING,
+                               IN_ARGUMENT, IN_SWITCHES, has_resting_sums, build_resting_sums},
     [FUNCTION_START] = {"d state / dt, and the first coefficients of all series", "start",
                         "const struct Point *point, Real *derivative, Series *restrict w", "derivative", RETURNS_STATUS,
                         IN_TARGET, IN_TAYLOR, has_series, NULL},

@@ -172,7 +172,7 @@ void switching_write(FILE *file, const struct Program *program) {
   struct SwitchTable metadata = switch_metadata_of(program);
   fputs("extern const struct EventLaws event_laws;\n\n", file);
   for (enum FunctionName i = LAGRANGIAN_IR_FUNCTIONS; i < IR_FUNCTION_COUNT; i++)
-    statements_function(file, program, i, "", program->ir_functions[i]);
+    if (has_function(program, i)) statements_function(file, program, i, "", program->ir_functions[i]);
   if (program->watched_series != NULL) statements_watched_limit(file, program);
   write_branches(file, &metadata);
   write_contacts(file, &metadata);

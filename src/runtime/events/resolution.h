@@ -29,8 +29,8 @@ struct Resolution {
   double *struck;              /* contacts: 1 if an impulse acted in the event, else 0 */
   double *takes_part;          /* of each contact, then each friction: 1 if in struct ContactImpulses, else 0 */
   double *moves;               /* of each resting velocity: its mode by find_resting */
-  double *probe_input, *probe_acceleration, *probe_indicators; /* workspace of find_resting */
-  double *acceleration;                                        /* accelerations, then constraint forces */
+  double *probe_input, *probe_acceleration, *probe_sums; /* workspace of find_resting */
+  double *acceleration;                                  /* accelerations, then constraint forces */
   double *kept_modes;
   double *rounded, *derivative, *rounding, *correction;
   const struct BranchMetadata *switched;  /* the first branch that switched; NULL for none */

@@ -80,7 +80,7 @@ static void set_resting_velocities(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->resting_count && resolution->changed; i++) {
     const struct RestingMetadata *resting = &switches->resting[i];
-    if (resting->kind != RESTING_INDICATOR && mode_of(resolution, resting->mode) == VELOCITY_RESTS)
+    if (resting->kind != RESTING_SUM && mode_of(resolution, resting->mode) == VELOCITY_RESTS)
       resolution->state[lagrangian.coordinate_count + resting->index] = 0.0;
   }
 }

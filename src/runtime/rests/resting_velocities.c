@@ -7,8 +7,8 @@
  * Velocities that the coordinates, time or inputs make 0 only for an instant are not at rest. A decision costs two
  * projections, with probability 1 it is right but for rounding errors.
  *
- * The indicator of a branch that is linear in several velocities, sum_i a_i v_i + r, has the value r if the projection
- * takes the sum to 0: the same projections decide that.
+ * The indicator of a branch that is linear in several velocities, sum_i a_i v_i + r, has the value r if the sum rests.
+ * The same projections decide that: they take a sum at rest to 0.
  *
  * A prescribed velocity rests if it is 0, and its acceleration is 0 here and nearby. The error of the method may leave
  * it other than 0 where a drive stops; so it also rests if it is small, and accelerated until the event.
@@ -140,25 +140,11 @@ static void scatter_velocities(struct Probe *probe) {
       probe->state[n + switches->resting[i].index] = 0.0;
 }
 
-/* Evaluates indicators at the probe; those with sums of velocities do not depend on the accelerations. */
-static void find_indicators(const struct Probe *probe, size_t row) {
+/* Writes the sums of velocities at the probe. */
+static void find_sums(const struct Probe *probe, double *sums) {
   const struct Resolution *resolution = probe->resolution;
-  double *indicator = resolution->probe_indicators + row * indicator_count(resolution->switches);
-  resolution->switches->indicators(&probe->point, resolution->acceleration, indicator);
-}
-
-/* The rows of indicators: without velocities, with random ones, and with these after the projection. */
-enum { WITHOUT, RANDOM, PROJECTED };
-
-/* True if the projection has taken a velocity to 0, or the sum of velocities in an indicator. */
-static bool has_vanished(const struct Probe *probe, const struct RestingMetadata *resting) {
-  const struct Resolution *resolution = probe->resolution;
-  size_t velocity = lagrangian.coordinate_count + resting->index, count = indicator_count(resolution->switches);
-  const double *indicator = resolution->probe_indicators + resting->index;
-  if (resting->kind != RESTING_INDICATOR)
-    return fabs(probe->state[velocity]) <= projected_rest * lagrangian.steps.nominal[velocity];
-  double rest = indicator[WITHOUT * count], size = fabs(indicator[RANDOM * count] - rest);
-  return fabs(indicator[PROJECTED * count] - rest) <= projected_rest * size;
+  if (resolution->switches->resting_sums != NULL)
+    resolution->switches->resting_sums(&probe->point, resolution->acceleration, sums);
 }
 
 /* Projects random velocities at the probe, and lets those move that do not become 0. */
@@ -166,35 +152,20 @@ static void find_moving(struct Probe *probe) {
   struct Resolution *resolution = probe->resolution;
   const struct SwitchTable *switches = resolution->switches;
   size_t n = lagrangian.coordinate_count;
-  bool has_sums = has_kind(switches, RESTING_INDICATOR);
-  memset(probe->state + n, 0, n * sizeof *probe->state);
-  if (has_sums) find_indicators(probe, WITHOUT);
+  double *random = resolution->probe_sums, *projected = random + switches->resting_count;
   scatter_velocities(probe);
-  if (has_sums) find_indicators(probe, RANDOM);
+  find_sums(probe, random);
   bool exist = lagrangian.constraints.correct_velocities(&probe->point, resolution->correction) == 0;
   for (size_t i = 0; i < n && exist; i++) probe->state[n + i] += resolution->correction[i];
-  if (has_sums) find_indicators(probe, PROJECTED);
-  for (size_t i = 0; i < switches->resting_count; i++)
-    if (!exist || !has_vanished(probe, &switches->resting[i]))
-      resolution->moves[i] = fmax(resolution->moves[i], VELOCITY_MOVES);
-}
-
-/* Finds what moves at the present point and nearby. Indicators show all velocities meanwhile. */
-static void find_moving_nearby(struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  struct Instance *instance = resolution->instance;
-  bool hides = has_kind(switches, RESTING_INDICATOR);
-  if (hides) resolution_keep_modes(resolution);
-  for (size_t i = 0; i < switches->resting_count && hides; i++)
-    instance->parameter[switches->resting[i].mode] = VELOCITY_MOVES;
-  instance->parameter_constants_are_stale |= hides;
-  if (evaluate_prepare(instance) == STATUS_DONE) {
-    struct Probe probe = probe_here(resolution);
-    find_moving(&probe);
-    move_nearby(&probe);
-    find_moving(&probe);
+  find_sums(probe, projected);
+  for (size_t i = 0; i < switches->resting_count; i++) {
+    size_t index = switches->resting[i].index;
+    bool is_sum = switches->resting[i].kind == RESTING_SUM;
+    double left = is_sum ? projected[index] : probe->state[n + index];
+    double scale = is_sum ? fabs(random[index]) : lagrangian.steps.nominal[n + index];
+    bool rests = exist && fabs(left) <= projected_rest * scale;
+    if (!rests) resolution->moves[i] = fmax(resolution->moves[i], VELOCITY_MOVES);
   }
-  if (hides) resolution_restore_modes(resolution);
 }
 
 void resting_find(struct Resolution *resolution) {
@@ -208,5 +179,9 @@ void resting_find(struct Resolution *resolution) {
   }
   if (!(may_rest || has_drives) || evaluate_prepare(resolution->instance) != STATUS_DONE) return;
   if (has_drives) find_accelerating(resolution);
-  if (may_rest) find_moving_nearby(resolution);
+  if (!may_rest) return;
+  struct Probe probe = probe_here(resolution);
+  find_moving(&probe);
+  move_nearby(&probe);
+  find_moving(&probe);
 }

@@ -98,26 +98,16 @@ static size_t branch_with(const struct SwitchingExpressions *switching, Node mod
   return branch;
 }
 
-/* Returns the first branch with these velocities in its indicator; branch_count for none. */
-static size_t branch_that_moves(const struct SwitchingExpressions *switching, Node moves) {
-  size_t branch = 0;
-  while (branch < switching->branch_count && switching->branches[branch]->moves != moves) branch++;
-  return branch;
-}
-
-/* Adds the velocities at rest, without those of branches that the system does not use. */
-static void add_resting(struct SwitchTable *metadata, const struct Program *program) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
+static const struct RestingMetadata *resting_of(const struct Program *program) {
   const struct Switches *switches = &program->model->switches;
-  struct RestingMetadata *all = allocate(switches->resting_count, sizeof *all);
+  struct RestingMetadata *metadata = allocate(switches->resting_count, sizeof *metadata);
+  size_t sums = 0;
   for (size_t i = 0; i < switches->resting_count; i++) {
     const struct RestingVelocity *resting = &switches->resting[i];
-    bool is_sum = resting->kind == RESTING_INDICATOR;
-    size_t index = is_sum ? branch_that_moves(switching, resting->mode) : resting->coordinate;
-    if (is_sum && index == switching->branch_count) continue;
-    all[metadata->resting_count++] = (struct RestingMetadata){resting->kind, mode_index(program, resting->mode), index};
+    size_t index = resting->kind == RESTING_SUM ? sums++ : resting->coordinate;
+    metadata[i] = (struct RestingMetadata){resting->kind, mode_index(program, resting->mode), index};
   }
-  metadata->resting = all;
+  return metadata;
 }
 
 static const struct SampleMetadata *samples_of(const struct Program *program) {
@@ -150,6 +140,7 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
                                  .friction_varies = switching->friction_varies,
                                  .has_last_signs = switching->has_last_signs,
                                  .rests_on = switching->rests,
+                                 .resting_count = switches->resting_count,
                                  .timed = switching->timed,
                                  .timed_count = switching->timed_count,
                                  .affine_count = switching->affine_count,
@@ -157,7 +148,7 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
   if (metadata.branch_count > 0) metadata.branches = branches_of(program);
   if (metadata.contact_count > 0) metadata.contacts = contacts_of(program);
   if (metadata.friction_count > 0) metadata.frictions = frictions_of(program);
-  add_resting(&metadata, program);
+  if (metadata.resting_count > 0) metadata.resting = resting_of(program);
   if (has_planes(switches)) add_planes(&metadata, program);
   if (metadata.event_count > 0) add_events(&metadata, program);
   if (metadata.sample_count > 0) metadata.samples = samples_of(program);

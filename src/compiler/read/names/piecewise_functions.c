@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "algebra/cone.h"
+#include "algebra/differentiate.h"
 #include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
@@ -121,37 +122,24 @@ static Node piecewise_less(struct Scope *scope, Node left, Node right, long line
   return function(scope->graph, GUARD, branch_of(scope, difference, "a condition", line), ONE);
 }
 
-static Node rebuilt(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
-  struct Graph *graph = scope->graph;
-  switch (operation) {
-  case ADD: return add(graph, left, right);
-  case MULTIPLY: return multiply(graph, left, right);
-  case POWER: return power(graph, left, right);
-  case LESS: return piecewise_less(scope, left, right, line);
-  case FLOOR: return floor_of(scope, left, line);
-  default:
-    return functions[operation].has_pieces ? piecewise_function(scope, operation, left, right, line)
-                                           : function(graph, operation, left, right);
-  }
+/* The scope and the line of an expression whose pieces get modes. */
+struct Piecewise {
+  struct Scope *scope;
+  long line;
+};
+
+static bool replace_by_modes(void *context, enum Operation operation, Node left, Node right, Node *result) {
+  struct Scope *scope = ((struct Piecewise *)context)->scope;
+  long line = ((struct Piecewise *)context)->line;
+  if (operation == LESS) *result = piecewise_less(scope, left, right, line);
+  else if (operation == FLOOR) *result = floor_of(scope, left, line);
+  else if (functions[operation].has_pieces) *result = piecewise_function(scope, operation, left, right, line);
+  else return false;
+  return true;
 }
 
-/* Collects the nodes in a cone of its own, as making modes uses that of the graph. */
 Node with_modes(struct Scope *scope, Node node, long line) {
-  const struct Graph *graph = scope->graph;
-  if (keeps_whole(scope)) return node;
-  struct Cone *cone = cone_create();
-  cone_collect(cone, graph, &node, 1);
-  graph_work(graph, cone->work);
-  Node *mapped = allocate(cone->count, sizeof *mapped);
-  for (size_t index = 0; index < cone->count; index++) {
-    const struct Vertex vertex = graph->vertices[cone->nodes[index]];
-    int arity = operation_arity(vertex.operation);
-    Node left = arity > 0 ? mapped[cone_slot(cone, vertex.left)] : ZERO;
-    Node right = arity > 1 ? mapped[cone_slot(cone, vertex.right)] : ZERO;
-    mapped[index] = arity == 0 ? cone->nodes[index] : rebuilt(scope, vertex.operation, left, right, line);
-  }
-  Node result = mapped[cone_slot(cone, node)];
-  release(mapped);
-  cone_release(cone);
-  return result;
+  struct Piecewise piecewise = {scope, line};
+  const struct Rebuilding rebuilding = {scope->graph, &piecewise, replace_by_modes};
+  return keeps_whole(scope) ? node : rebuild(&rebuilding, node);
 }
