@@ -41,7 +41,8 @@ void instance_reset(struct Instance *instance) {
   initial_state_follow(instance);
   instance->fmu_state->changed = CHANGED_VALUES;
   instance->parameter_constants_are_stale = instance->solver_is_stale = true;
-  instance->reported_impossible_start = instance->reported_other_forces = instance->reported_other_impulses = false;
+  instance->reported_impossible_start = instance->reported_straight_input = false;
+  instance->reported_other_forces = instance->reported_other_impulses = false;
   instance->reported_singularity = 0;
 }
 
