@@ -266,6 +266,13 @@ struct SwitchTable {
   void (*resting_sums)(const struct Point *point, const Real *acceleration, Real *sum);
   void (*find_resting)(struct Resolution *resolution); /* rests/resting_velocities.h; NULL without such velocities */
   /*
+   * Computes the distances of the centres of ball_count balls from the shapes that they touch, and of the axes of
+   * capsules, relative to their radii. ball_names: of their compliant contacts, for messages. NULL without any.
+   */
+  void (*ball_distances)(const struct Point *point, const Real *acceleration, Real *distance);
+  const char *const *ball_names;
+  size_t ball_count;
+  /*
    * Branches whose indicators depend only on time, parameters and modes: affine_count that are affine in time, others.
    */
   const size_t *timed;

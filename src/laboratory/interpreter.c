@@ -109,6 +109,10 @@ static void resting_sums(const struct Point *point, const double *acceleration, 
   fill_with(FUNCTION_RESTING_SUMS, point, acceleration, sum);
 }
 
+static void ball_distances(const struct Point *point, const double *acceleration, double *distance) {
+  fill_with(FUNCTION_BALL_DISTANCES, point, acceleration, distance);
+}
+
 /* Binds the spaces of series, which are arrays of numbers for the interpreter. */
 static void set_rows(struct Frame *frame, const double *time, const void *input, const void *x, const void *w) {
   frame->base[SPACE_TIME_ROW] = (double *)time;
@@ -221,5 +225,6 @@ void set_functions(struct Lagrangian *system, struct SwitchTable *switches, cons
   SET(switches->rounding_bounds, FUNCTION_ROUNDING_BOUNDS, rounding_bounds);
   SET(switches->switching_values, FUNCTION_SWITCHING_VALUES, switching_values);
   SET(switches->resting_sums, FUNCTION_RESTING_SUMS, resting_sums);
+  SET(switches->ball_distances, FUNCTION_BALL_DISTANCES, ball_distances);
   SET(switches->watched_limit, FUNCTION_WATCHED_LIMIT, watched_limit);
 }

@@ -6,7 +6,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from scipy.optimize import minimize
+from scipy.optimize import brentq, minimize
 from scipy.spatial.transform import Rotation
 
 import fmu
@@ -78,12 +78,23 @@ LEVER = """<system name="Lever"><coordinate name="z" velocity="v" unit="m"/><coo
   <contact name="one" between="s" and="floor" stiffness="1e4"/><contact name="two" between="q" and="floor" stiffness="1e4"/></system>"""
 
 
+# A ball on a soft obstacle, whose top is at 0.1 m.
+OBSTACLES = {"Box": 'type="box" sizeX="1" sizeY="1" sizeZ="0.2"', "Cylinder": 'type="cylinder" radius="0.5" length="0.2"', "Sphere": 'type="sphere" radius="0.1"',
+             "Capsule": 'type="capsule" radius="0.1" length="0.3" axis="x"'}  # fmt: skip
+SINKING = """<system name="{name}">{HEAD}<coordinate name="z" velocity="v" unit="m" start="0.3"/><particle name="ball" mass="m" x="0" y="0" z="z"/><gravity z="-g"/>
+  <shape name="skin" type="sphere" radius="r" in="ball"/><shape name="obstacle" {obstacle}/>{contact}<solver method="{method}"/></system>"""
+
+
 @pytest.fixture(scope="module", autouse=True)
 def built():
     texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Crate": CRATE, "Three": THREE, "Twice": TWICE, "Lever": LEVER, "Flat": FLAT}
     for first, second in PAIRS:
         parts = {"first": SHAPES[first].format("one", "a"), "second": SHAPES[second].format("other", "b"), "contact": CONTACT.format("one", "other")}
         texts[first + second] = PAIR.format(first, second, HEAD=HEAD, a=free("a"), b=free("b", "1"), **parts)
+    for kind, obstacle in OBSTACLES.items():
+        for method in ("taylor", "radau"):
+            name = f"Sinking{kind}{method.title()}"
+            texts[name] = SINKING.format(name=name, HEAD=HEAD, obstacle=obstacle, contact=CONTACT.format("skin", "obstacle"), method=method)
     build_systems("shapes", texts)
 
 
@@ -340,3 +351,21 @@ def test_centres_inside(other, height, warns, tmp_path):
     result = subprocess.run([LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True)
     message = "system.xml:3: warning: the distance of 'ball' and 'other' without their radii is 0 at the start values; expected a number above 0"
     assert result.returncode == 0 and (message in result.stderr) == warns
+
+
+@pytest.mark.parametrize("method", ["taylor", "radau"])
+@pytest.mark.parametrize("kind", OBSTACLES)
+def test_centres_that_come_inside(kind, method, open_fmu):
+    """
+    The ball touches after a fall of 0.1 m. From then on its height above this is -h + h cos(p t) - V/p sin(p t), until its centre is at the
+    top of the box, 0.1 m below, or at the centre of the round obstacle, 0.2 m below.
+    """
+    k, m, g = 10, 2, 9.81
+    depth, p = 0.1 if kind in ("Box", "Cylinder") else 0.2, math.sqrt(k / m)
+    h, speed = g / p**2, math.sqrt(0.2 * g)
+    after = brentq(lambda t: -h + h * math.cos(p * t) - speed / p * math.sin(p * t) + depth, 0, 0.3)
+    instance = open_fmu(f"Sinking{kind}{method.title()}").initialize({"k": k})
+    with instance.fails(DISCARD, "at the contact 'touch' the centre of a ball has come into the other shape, .*; expected a larger stiffness"):
+        instance.run(1, 0.05)
+    stopped = [text for _, _, text in instance.messages if " stopped at time " in text][0]
+    assert float(stopped.split(" stopped at time ")[1].split()[0]) == pytest.approx(math.sqrt(0.2 / g) + after, abs=1e-6)

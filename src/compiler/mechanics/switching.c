@@ -367,6 +367,11 @@ static void fill_resting_sums(const struct Switches *switches, struct SwitchingE
       switching->resting_sums[switching->resting_sum_count++] = switches->resting[i].sum;
 }
 
+static void fill_ball_distances(const struct Switches *switches, struct SwitchingExpressions *switching) {
+  switching->ball_distances = allocate(switches->ball_count, sizeof(Node));
+  for (size_t i = 0; i < switches->ball_count; i++) switching->ball_distances[i] = switches->balls[i].distance;
+}
+
 struct SwitchingExpressions *switching_derive(const struct Model *model, const struct Equations *equations) {
   if (!has_switches(&model->switches) || is_motionless(model)) return NULL;
   struct SwitchingExpressions *switching = allocate(1, sizeof *switching);
@@ -385,6 +390,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   switching->value_count = values.count;
   find_timed(model, switching);
   fill_resting_sums(&model->switches, switching);
+  fill_ball_distances(&model->switches, switching);
   fill_rounding_bounds(model, &counts, switching);
   return switching->indicator_count > 0 ? switching : NULL;
 }

@@ -25,6 +25,7 @@ struct SwitchingExpressions {
   size_t value_count;
   Node *resting_sums; /* resting_sums of struct SwitchTable */
   size_t resting_sum_count;
+  Node *ball_distances; /* ball_distances of struct SwitchTable */
   bool feels_forces;    /* a branch depends on a constraint force */
   bool has_last_signs;  /* some branches are those of events' expressions */
   bool friction_varies; /* the sliding force of a friction is not constant */

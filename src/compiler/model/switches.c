@@ -13,6 +13,11 @@ void append_remainder(struct Switches *switches, struct Remainder remainder) {
   switches->remainders[switches->remainder_count++] = remainder;
 }
 
+void append_ball(struct Switches *switches, struct BallContact ball) {
+  switches->balls = make_room(switches->balls, switches->ball_count, sizeof *switches->balls);
+  switches->balls[switches->ball_count++] = ball;
+}
+
 const struct Branch *branch_with_mode(const struct Switches *switches, Node mode) {
   for (size_t i = 0; i < switches->branch_count; i++)
     if (switches->branches[i].mode == mode) return &switches->branches[i];

@@ -100,6 +100,12 @@ struct Event {
   char *text; /* for messages: the condition, or the period of a sample */
 };
 
+/* A compliant contact of a ball with another shape, or of two capsules. */
+struct BallContact {
+  const char *name;
+  Node distance; /* of the centre, or of the axes, relative to the radii; at 0 the force has no direction */
+};
+
 /* All switching elements. Their modes are numbered from first on, after the parameters. */
 struct Switches {
   size_t first;      /* index of the first mode: the number of parameters */
@@ -114,12 +120,17 @@ struct Switches {
   size_t friction_count;
   struct RestingVelocity *resting;
   size_t resting_count;
+  struct BallContact *balls;
+  size_t ball_count;
   struct Event *events;
   size_t event_count;
 };
 
 /* Appends a branch to the list. */
 void append_branch(struct Switches *switches, struct Branch branch);
+
+/* Appends a contact to the list of balls. */
+void append_ball(struct Switches *switches, struct BallContact ball);
 
 /* Appends the expression of mod(a, divisor) to the list. */
 void append_remainder(struct Switches *switches, struct Remainder remainder);

@@ -251,6 +251,11 @@ static struct IrFunction *build_resting_sums(const struct Program *program, stru
   return ir_of_targets(generator, switching->resting_sums, switching->resting_sum_count);
 }
 
+static struct IrFunction *build_ball_distances(const struct Program *program, struct CodeGenerator *generator) {
+  const struct SwitchingExpressions *switching = program->equations->switching;
+  return ir_of_targets(generator, switching->ball_distances, program->model->switches.ball_count);
+}
+
 static bool starts_follow(const struct Program *program) {
   return program->expressions->initial.count > 0;
 }
@@ -301,6 +306,10 @@ static bool has_output_series(const struct Program *program) {
 
 static bool has_resting_sums(const struct Program *program) {
   return switches(program) && program->equations->switching->resting_sum_count > 0;
+}
+
+static bool has_balls(const struct Program *program) {
+  return switches(program) && program->model->switches.ball_count > 0;
 }
 
 static bool has_watched_limit(const struct Program *program) {
@@ -372,6 +381,9 @@ const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_RESTING_SUMS] = {"Sums of velocities that may rest", "resting_sums",
                                "const struct Point *point, const Real *a, Real *sum", "sum", RETURNS_NOTHING,
                                IN_ARGUMENT, IN_SWITCHES, has_resting_sums, build_resting_sums},
+    [FUNCTION_BALL_DISTANCES] = {"Distances of balls from what they touch", "ball_distances",
+                                 "const struct Point *point, const Real *a, Real *distance", "distance",
+                                 RETURNS_NOTHING, IN_ARGUMENT, IN_SWITCHES, has_balls, build_ball_distances},
     [FUNCTION_START] = {"d state / dt, and the first coefficients of all series", "start",
                         "const struct Point *point, Real *derivative, Series *restrict w", "derivative", RETURNS_STATUS,
                         IN_TARGET, IN_TAYLOR, has_series, NULL},

@@ -28,6 +28,7 @@ enum FunctionName {
   FUNCTION_ROUNDING_BOUNDS,
   FUNCTION_SWITCHING_VALUES,
   FUNCTION_RESTING_SUMS,
+  FUNCTION_BALL_DISTANCES,
   IR_FUNCTION_COUNT, /* from here on: functions with several instruction lists, or one of several of their kind */
   FUNCTION_START = IR_FUNCTION_COUNT,
   FUNCTION_SERIES,

@@ -87,6 +87,16 @@ static void write_rests(FILE *file, const struct SwitchTable *metadata) {
   fputs("};\n\n", file);
 }
 
+static void write_balls(FILE *file, const struct SwitchTable *metadata) {
+  if (metadata->ball_count == 0) return;
+  fputs("static const char *const ball_names[] = {", file);
+  for (size_t i = 0; i < metadata->ball_count; i++) {
+    write_c_string(file, metadata->ball_names[i]);
+    fputs(", ", file);
+  }
+  fputs("};\n\n", file);
+}
+
 static void write_event(FILE *file, const struct EventMetadata *event) {
   static const char *const passages[] = {[PASSAGE_HOLDS] = "PASSAGE_HOLDS",
                                          [PASSAGE_RISES] = "PASSAGE_RISES",
@@ -148,6 +158,8 @@ static void write_table(FILE *file, const struct Program *program, const struct 
   write_flag(file, "has_last_signs", metadata->has_last_signs);
   if (metadata->contact_count > 0)
     fputs("    .contacts = contact_metadata,\n    .contact_laws = &contact_laws,\n", file);
+  if (metadata->ball_count > 0)
+    fprintf(file, "    .ball_names = ball_names,\n    .ball_count = %zu,\n", metadata->ball_count);
   if (metadata->rests_on != NULL) fputs("    .rests_on = rests,\n", file);
   if (metadata->friction_count > 0)
     fprintf(file, "    .frictions = friction_metadata,\n    .friction_laws = &%s,\n", friction_laws_of(metadata));
@@ -180,6 +192,7 @@ void switching_write(FILE *file, const struct Program *program) {
   write_planes(file, &metadata);
   write_resting(file, &metadata);
   write_rests(file, &metadata);
+  write_balls(file, &metadata);
   write_events(file, &metadata);
   write_timed(file, &metadata);
   write_samples(file, &metadata);

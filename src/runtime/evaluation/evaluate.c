@@ -42,6 +42,8 @@ const char *evaluate_rate_without_value(struct Instance *instance) {
 }
 
 static void log_not_finite(struct Instance *instance, enum Status status, double time) {
+  const struct EventLaws *laws = lagrangian.event_laws;
+  if (laws != NULL && laws->explain_ball(instance, status, time)) return;
   const char *state = evaluate_rate_without_value(instance);
   if (state != NULL)
     log_message(instance, status,
@@ -53,8 +55,7 @@ static void log_not_finite(struct Instance *instance, enum Status status, double
     log_message(
         instance, status,
         "time %g: the accelerations are not finite, as when something is divided by 0, exp or cosh gets a large "
-        "argument, the centre of a ball is in another shape, or an integral leaves the range that lagc has named; try "
-        "other parameters, inputs or start values",
+        "argument, or an integral leaves the range that lagc has named; try other parameters, inputs or start values",
         time);
 }
 

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "evaluation/services.h"
 #include "events/branches.h"
 #include "events/exchange.h"
 #include "events/passing.h"
@@ -17,6 +18,25 @@ static bool holds_at_times(const char *constraint) {
   return is_switched;
 }
 
+/* Relative to the radii: the distance of a ball's centre from the other shape at which a solver stops. */
+static const double nearest_centre = 1e-5;
+
+static bool explain_ball(struct Instance *instance, enum Status status, double time) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Resolution resolution = resolution_of(instance);
+  struct Point point = solver_point(instance, time, instance->state);
+  if (switches->ball_count == 0) return false;
+  switches->ball_distances(&point, resolution.acceleration, resolution.ball_distance);
+  size_t ball = 0;
+  while (ball < switches->ball_count && !(resolution.ball_distance[ball] <= nearest_centre)) ball++;
+  if (ball == switches->ball_count) return false;
+  log_message(instance, status,
+              "time %g: at the contact '%s' the centre of a ball has come into the other shape, or two axes have met, so "
+              "that its force has no direction; expected a larger stiffness, or a slower impact",
+              time, switches->ball_names[ball]);
+  return true;
+}
+
 const struct EventLaws event_laws = {.work_count = resolution_work_count,
                                      .resolve = exchange_resolve,
                                      .guess = branches_guess,
@@ -28,6 +48,7 @@ const struct EventLaws event_laws = {.work_count = resolution_work_count,
                                      .pass_barrier = events_pass_barrier,
                                      .explain = events_explain,
                                      .explain_stop = events_explain_stop,
+                                     .explain_ball = explain_ball,
                                      .holds_at_times = holds_at_times,
                                      .check = events_check,
                                      .return_to_domain = exchange_return_to_domain,

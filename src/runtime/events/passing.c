@@ -371,6 +371,7 @@ void events_explain(struct Instance *instance, const struct CommunicationStep *s
 
 bool events_explain_stop(struct Instance *instance, double time) {
   const struct FrictionLaws *laws = lagrangian.switches->friction_laws;
+  if (lagrangian.event_laws->explain_ball(instance, STATUS_DISCARD, time)) return true;
   if (resolve_explain(instance, time, instance->state)) return true;
   if (laws == NULL) return false;
   struct Resolution resolution = resolution_at(instance, time, instance->state, AT_CHANGE);

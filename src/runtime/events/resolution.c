@@ -45,6 +45,7 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
       {&resolution->probe_input, switches->resting_count > 0 ? lagrangian.input_count : 0},
       {&resolution->probe_acceleration, switches->resting_count > 0 ? rows_of_matrix() : 0},
       {&resolution->probe_sums, 2 * switches->resting_count},
+      {&resolution->ball_distance, switches->ball_count},
       {&resolution->energy, switches->energy_count},
       {&resolution->acceleration, rows_of_matrix()},
       {&resolution->kept_modes, switches->mode_count},

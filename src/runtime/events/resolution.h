@@ -30,6 +30,7 @@ struct Resolution {
   double *takes_part;          /* of each contact, then each friction: 1 if in struct ContactImpulses, else 0 */
   double *moves;               /* of each resting velocity: its mode by find_resting */
   double *probe_input, *probe_acceleration, *probe_sums; /* workspace of find_resting */
+  double *ball_distance;                                 /* workspace of explain_ball() */
   double *acceleration;                                  /* accelerations, then constraint forces */
   double *kept_modes;
   double *rounded, *derivative, *rounding, *correction;

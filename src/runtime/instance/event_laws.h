@@ -70,6 +70,8 @@ struct EventLaws {
                   const struct EventProgress *progress);
   /* Logs why the solver stopped, if a contact has jammed at the instance's state; false if none has. */
   bool (*explain_stop)(struct Instance *instance, double time);
+  /* Logs the contact in which the centre of a ball is in the other shape at the instance's state; false if none is. */
+  bool (*explain_ball)(struct Instance *instance, enum Status status, double time);
   /* True if the constraint belongs to a contact or friction, which closes and opens at events. */
   bool (*holds_at_times)(const char *constraint);
   /*

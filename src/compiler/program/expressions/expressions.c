@@ -322,6 +322,7 @@ struct NodeList expressions_targets(const struct Expressions *expressions) {
     append_nodes(&targets, switching->rounding_bounds, switching->indicator_count);
     append_nodes(&targets, switching->values, switching->value_count);
     append_nodes(&targets, switching->resting_sums, switching->resting_sum_count);
+    append_nodes(&targets, switching->ball_distances, expressions->model->switches.ball_count);
   }
   const struct SeriesPlan *const plans[] = {expressions->series, expressions->output_series,
                                             expressions->watched_series};

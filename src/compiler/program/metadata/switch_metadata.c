@@ -125,6 +125,12 @@ static const struct SampleMetadata *samples_of(const struct Program *program) {
   return metadata;
 }
 
+static const char *const *ball_names_of(const struct Switches *switches) {
+  const char **names = allocate(switches->ball_count, sizeof *names);
+  for (size_t i = 0; i < switches->ball_count; i++) names[i] = switches->balls[i].name;
+  return names;
+}
+
 struct SwitchTable switch_metadata_of(const struct Program *program) {
   const struct SwitchingExpressions *switching = program->equations->switching;
   const struct Switches *switches = &program->model->switches;
@@ -141,6 +147,7 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
                                  .has_last_signs = switching->has_last_signs,
                                  .rests_on = switching->rests,
                                  .resting_count = switches->resting_count,
+                                 .ball_count = switches->ball_count,
                                  .timed = switching->timed,
                                  .timed_count = switching->timed_count,
                                  .affine_count = switching->affine_count,
@@ -149,6 +156,7 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
   if (metadata.contact_count > 0) metadata.contacts = contacts_of(program);
   if (metadata.friction_count > 0) metadata.frictions = frictions_of(program);
   if (metadata.resting_count > 0) metadata.resting = resting_of(program);
+  if (metadata.ball_count > 0) metadata.ball_names = ball_names_of(switches);
   if (has_planes(switches)) add_planes(&metadata, program);
   if (metadata.event_count > 0) add_events(&metadata, program);
   if (metadata.sample_count > 0) metadata.samples = samples_of(program);

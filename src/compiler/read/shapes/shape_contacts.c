@@ -236,6 +236,15 @@ static void add_force_on(struct Reader *reader, long line, const struct ContactS
   add_torque_on(reader, line, vector_cross(graph, lever_arm, force), frame);
 }
 
+/* Lets messages name the contact where the centre of its ball comes into the other shape. */
+static void note_ball(struct Reader *reader, xmlNodePtr node, const struct ContactPoint *point) {
+  struct Graph *graph = reader->model->graph;
+  char *name = attribute(node, "name");
+  if (point->distance == ZERO || name == NULL) return;
+  Node radii = subtract(graph, point->distance, point->gap);
+  append_ball(&reader->model->switches, (struct BallContact){name, divide(graph, point->distance, radii)});
+}
+
 static void append_force(struct Reader *reader, xmlNodePtr node, Node force) {
   char *name = name_attribute(reader, node, "name");
   if (name == NULL) return;
@@ -270,6 +279,7 @@ void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
     struct Vector force = force_of_contact(graph, &law, &contact, point, pressing);
     add_force_on(reader, line, &contact.first, point->point, force);
     add_force_on(reader, line, &contact.second, point->point, vector_scale(graph, graph_constant(graph, -1.0), force));
+    note_ball(reader, node, point);
     sum = add(graph, sum, pressing);
   }
   append_force(reader, node, sum);
