@@ -43,13 +43,13 @@ static struct Derivation derivation_of(struct Page *page) {
                                   .momentum_rate = allocate(n, sizeof(Node)),
                                   .force = allocate(n, sizeof(Node))};
   derivation.lagrangian =
-      without_branches(model, subtract(graph, model->energies.kinetic.node, model->energies.potential.node));
+      as_written(model, subtract(graph, model->energies.kinetic.node, model->energies.potential.node));
   gradient_of(graph, derivation.lagrangian, VELOCITY, n, derivation.momentum);
   gradient_of(graph, derivation.lagrangian, COORDINATE, n, derivation.gradient);
   derivative_along(graph, derivation.momentum, n, time_seeds(model, true), derivation.momentum_rate);
   gradient_of(graph, model->energies.dissipation.node, VELOCITY, n, derivation.force);
   for (size_t i = 0; i < n; i++)
-    derivation.force[i] = without_branches(model, subtract(graph, model->forces.along[i].node, derivation.force[i]));
+    derivation.force[i] = as_written(model, subtract(graph, model->forces.along[i].node, derivation.force[i]));
   return derivation;
 }
 
@@ -72,8 +72,8 @@ static void write_position(const struct Derivation *derivation, const char *name
   struct Graph *graph = derivation->model->graph;
   Node rate;
   derivative_along(graph, &position, 1, time_seeds(derivation->model, true), &rate);
-  page_step_equation(derivation->page, name, without_branches(derivation->model, position));
-  page_step_equation(derivation->page, format_text("der(%s)", name), without_branches(derivation->model, rate));
+  page_step_equation(derivation->page, name, as_written(derivation->model, position));
+  page_step_equation(derivation->page, format_text("der(%s)", name), as_written(derivation->model, rate));
 }
 
 static void write_body(const struct Derivation *derivation, const struct Body *body, const char *name) {
@@ -147,12 +147,11 @@ static void write_matrix_form(const struct Derivation *derivation) {
                                                : "The form M(q) q″ + h(q, q′, t) = Q");
   for (size_t i = 0; i < n; i++)
     for (size_t j = i; j < n; j++) {
-      Node element = without_branches(model, inertia_element(derivation->equations->inertia, i, j));
+      Node element = as_written(model, inertia_element(derivation->equations->inertia, i, j));
       if (element != ZERO) page_step_equation(page, format_text("M%zu%zu", i + 1, j + 1), element);
     }
   for (size_t i = 0; i < n; i++) {
-    Node bias =
-        subtract(model->graph, derivation->force[i], without_branches(model, derivation->equations->right_side[i]));
+    Node bias = subtract(model->graph, derivation->force[i], as_written(model, derivation->equations->right_side[i]));
     page_step_equation(page, format_text("h%zu", i + 1), bias);
   }
   page_paragraph(page, "M is symmetric; elements that are not listed are 0.");
@@ -180,10 +179,10 @@ static Node *fractions_of_accelerations(const struct Derivation *derivation) {
        *solution = allocate(n, sizeof *solution);
   if (n > SOLVED_LIMIT || derivation->model->constraints.count > 0) return NULL;
   for (size_t i = 0; i < n; i++) {
-    right[i] = display_node(display, without_branches(derivation->model, equations->right_side[i]));
+    right[i] = display_node(display, as_written(derivation->model, equations->right_side[i]));
     for (size_t j = 0; j < n; j++)
       matrix[i * n + j] =
-          display_node(display, without_branches(derivation->model, inertia_element(equations->inertia, i, j)));
+          display_node(display, as_written(derivation->model, inertia_element(equations->inertia, i, j)));
   }
   if (n == 2) solve_pair(display, matrix, right, solution);
   return n == 2 || solve_fractions(display->graph, n, matrix, 1, right, solution) ? solution : NULL;

@@ -9,12 +9,6 @@
 #include "base/memory.h"
 #include "base/sorting.h"
 #include "mechanics/switching.h"
-#include "model/resting_velocities.h"
-
-/* Returns the expression without the modes of branches and of velocities at rest. */
-static Node as_written(const struct Model *model, Node node) {
-  return without_rests(model, without_branches(model, node));
-}
 
 static void add_name(struct NodeNames *names, Node node, const char *name) {
   if (names->of[node] != NULL) return;
@@ -138,7 +132,6 @@ struct Summary *summary_create(const struct Model *model, const struct Equations
     Node rate = is_as_written ? state->rate : equations->rates.nodes[i];
     summary->rates[i] = as_written(model, rate);
   }
-  for (size_t i = 0; i < summary->output_count; i++)
-    summary->outputs[i] = as_written(model, equations->outputs[i]);
+  for (size_t i = 0; i < summary->output_count; i++) summary->outputs[i] = as_written(model, equations->outputs[i]);
   return summary;
 }

@@ -7,6 +7,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "lagrangian.h"
+#include "model/resting_velocities.h"
 #include "model/time_derivative.h"
 
 /* Collects the expressions that determine the motion. */
@@ -411,4 +412,8 @@ Node without_branches(const struct Model *model, Node node) {
     if (node == before) break;
   }
   return node;
+}
+
+Node as_written(const struct Model *model, Node node) {
+  return without_rests(model, without_branches(model, node));
 }

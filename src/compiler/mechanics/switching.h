@@ -40,3 +40,6 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
 
 /* Replaces the modes of branches by the signs of their indicators, as for results, which cause no events. */
 Node without_branches(const struct Model *model, Node node);
+
+/* Returns the expression as pages show it, without the modes of branches and of velocities at rest. */
+Node as_written(const struct Model *model, Node node);

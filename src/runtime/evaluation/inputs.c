@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "evaluation/prescribed_inputs.h"
+
 void expand_input(const struct Instance *instance, size_t i, double time, double *coefficient) {
   double s = time - instance->fmu_state->time;
   size_t n = lagrangian.input_count;
@@ -55,15 +57,6 @@ static double farthest_beyond(const struct ScalarVariable *variable, const doubl
   return farthest;
 }
 
-static bool is_prescribed(size_t input) {
-  const struct ConstraintTable *constraints = &lagrangian.constraints;
-  bool prescribes = false;
-  for (size_t i = 0; i < constraints->prescribed_input_count; i++)
-    prescribes |= input >= constraints->prescribed_inputs[i].input &&
-                  input <= constraints->prescribed_inputs[i].input + constraints->prescribed_inputs[i].rates;
-  return prescribes;
-}
-
 /* Replaces an input's polynomial by the line to its last value, or to the limit; warns at most once an instance. */
 static void straighten(struct Instance *instance, const struct ScalarVariable *variable, double length,
                        double farthest) {
@@ -73,10 +66,11 @@ static void straighten(struct Instance *instance, const struct ScalarVariable *v
   for (size_t order = 1; order < INPUT_ORDER; order++) derivative[order * lagrangian.input_count] = 0.0;
   if (instance->reported_straight_input) return;
   instance->reported_straight_input = true;
-  log_message(instance, STATUS_WARNING,
-              "time %g: the polynomial of the input '%s' reaches %g within the step, beyond its %s; the input is linear "
-              "there instead, up to the limit",
-              instance->fmu_state->time, variable->name, farthest, farthest < variable->minimum ? "min" : "max");
+  log_message(
+      instance, STATUS_WARNING,
+      "time %g: the polynomial of the input '%s' reaches %g within the step, beyond its %s; the input is linear "
+      "there instead, up to the limit",
+      instance->fmu_state->time, variable->name, farthest, farthest < variable->minimum ? "min" : "max");
 }
 
 /* Logs a prescribed input that leaves its limits by more than rounding; false if it does. */
@@ -94,7 +88,7 @@ static bool limit_input(struct Instance *instance, const struct ScalarVariable *
   expand_input(instance, variable->index, instance->fmu_state->time, coefficient);
   double farthest = farthest_beyond(variable, coefficient, length);
   if (farthest == clamp(variable, farthest)) return true;
-  if (is_prescribed(variable->index)) return check_prescribed(instance, variable, farthest);
+  if (is_prescribed_input(variable->index)) return check_prescribed(instance, variable, farthest);
   straighten(instance, variable, length, farthest);
   return true;
 }

@@ -30,10 +30,11 @@ static bool explain_ball(struct Instance *instance, enum Status status, double t
   size_t ball = 0;
   while (ball < switches->ball_count && !(resolution.ball_distance[ball] <= nearest_centre)) ball++;
   if (ball == switches->ball_count) return false;
-  log_message(instance, status,
-              "time %g: at the contact '%s' the centre of a ball has come into the other shape, or two axes have met, so "
-              "that its force has no direction; expected a larger stiffness, or a slower impact",
-              time, switches->ball_names[ball]);
+  log_message(
+      instance, status,
+      "time %g: at the contact '%s' the centre of a ball has come into the other shape, or two axes have met, so "
+      "that its force has no direction; expected a larger stiffness, or a slower impact",
+      time, switches->ball_names[ball]);
   return true;
 }
 

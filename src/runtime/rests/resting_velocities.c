@@ -20,6 +20,7 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/prescribed_inputs.h"
 #include "evaluation/services.h"
 #include "instance/active_constraints.h"
 
@@ -68,13 +69,7 @@ static struct Probe probe_here(struct Resolution *resolution) {
  * constraints become polynomials at the start of a communication step. Others change by events.
  */
 static bool may_vary(const struct Instance *instance, size_t input) {
-  const struct ConstraintTable *constraints = &lagrangian.constraints;
-  bool varies = instance->kind == KIND_MODEL_EXCHANGE;
-  for (size_t i = 0; i < constraints->prescribed_input_count && !varies; i++) {
-    const struct PrescribedInput *prescribed = &constraints->prescribed_inputs[i];
-    varies = input >= prescribed->input && input <= prescribed->input + prescribed->rates;
-  }
-  return varies;
+  return instance->kind == KIND_MODEL_EXCHANGE || is_prescribed_input(input);
 }
 
 /* Sets the probe's inputs to those of a later time, and moves the ones that may vary. */
