@@ -62,11 +62,11 @@ def filled():
 def opened():
     instances = []
 
-    def opener(name, **options):
+    def open_instance(name, **options):
         instances.append(fmi3.Instance(name, **options))
         return instances[-1]
 
-    yield opener
+    yield open_instance
     for instance in instances:
         instance.free()
 
