@@ -14,7 +14,10 @@ struct Projection {
   double (*project)(struct Instance *instance, double time, double *state);
   /* Returns the change by project() at the instance's state, which stays as it is. */
   double (*drift)(struct Instance *instance, double time);
-  /* Returns the instance's state after project(), valid until the next projection; NULL if that fails. */
+  /*
+   * Returns the instance's state after project(), valid until the next projection; NULL if that fails, or if the state
+   * fulfils the constraints up to 1e-9 of the scales.
+   */
   const double *(*nearest)(struct Instance *instance, double time);
   /* True if the last project() or drift() has found redundant constraints. */
   bool (*found_redundant)(struct Instance *instance);

@@ -201,8 +201,10 @@ static double drift(struct Instance *instance, double time) {
   return project(instance, time, work.before);
 }
 
+/* A state off by less than converged stays: where constraints are nearly redundant, a move would magnify rounding. */
 static const double *nearest(struct Instance *instance, double time) {
-  return isfinite(drift(instance, time)) ? work_of(instance).before : NULL;
+  double size = drift(instance, time);
+  return isfinite(size) && size > converged ? work_of(instance).before : NULL;
 }
 
 /* Returns the first constraint whose residual is not finite. */
