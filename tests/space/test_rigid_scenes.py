@@ -1,4 +1,6 @@
-"""Rigid boxes thrown onto floors, onto a swinging plate, and beside a ball: simulations complete, and energy never grows."""
+"""Rigid boxes thrown onto floors, onto a swinging plate, and beside a ball, and pushed cylinders: simulations complete, and energy never grows."""
+
+import math
 
 import numpy as np
 import pytest
@@ -27,6 +29,9 @@ PLATE = """<coordinate name="h" velocity="vh" unit="m"/><coordinate name="p" vel
 TEXTS = {
     "ThrownBox": FLOOR,
     "BoxOnPlate": PLATE + FLOOR.replace('name="floor"', 'name="floor" in="plate"'),
+    "PushedCylinder": f"""<parameter name="rate" start="2" unit="N/s"/>{free("a", (0, 0, 0.1), 'type="cylinder" radius="0.06" length="0.2"')}
+  <point name="top" in="a" z="0.02"/><shape name="floor" type="plane"/>{CONTACT.format("c", "aShape", "floor")}
+  <force on="top" x="rate*time" y="0.3*rate*time"/>""",
     # The distance of ball and box contains a square root, which makes the search for events shorten its intervals.
     "BoxBesideBall": FLOOR + free("b", (0.05, 0, 0.6), 'type="sphere" radius="0.1"') + CONTACT.format("far", "bShape", "aShape"),
 }
@@ -87,3 +92,23 @@ def test_box_beside_ball():
     """Just before a corner sticks, the direction of its friction is dominated by rounding, which causes no event."""
     values = {"mu": 1.0} | velocities(0.352, -1.12, -1.495, 1.846, 0.157, 0.711) | velocities(1.447, 1.117, -0.632, 1.866, 1.575, -0.805, name="b")
     run("BoxBesideBall", values, 0.5)[0].free()
+
+
+@pytest.mark.parametrize("mu, rate", [(0.7816400926771664, 5.4822439358445946), (0.8076550635264025, 5.079936982176392), (0.7589413052262478, 7.861414140515888),
+                                      (0.9460060144497955, 18.711018659635584)])  # fmt: skip
+def test_pushed_cylinder(mu, rate):
+    """
+    A standing cylinder, on eight points, tips over the edge between two of them when the force's moment about it exceeds the weight's.
+    Shortly before, points that carry little begin to slide, in directions that follow from the forces.
+    """
+    push = np.array([1.0, 0.3])
+    edge = np.array([math.cos(math.pi / 8), math.sin(math.pi / 8)])  # the normal of the edge from 0 to 45 degrees
+    tips = 2 * 9.81 * 0.06 * math.cos(math.pi / 8) / (0.12 * rate * push @ edge)
+    instance = fmu.Instance("PushedCylinder").initialize({"mu": mu, "rate": rate})
+    while instance.time < 0.99 * tips - 1e-9:
+        instance.step(0.033 * tips)
+    assert np.max(np.abs(instance.get("avx", "avy", "avz", "ar1", "ar2", "ar3"))) < 1e-9
+    instance.step(0.04 * tips)
+    r1, r2 = instance.get("ar1", "ar2")
+    assert r2 * edge[0] - r1 * edge[1] > 1e-4
+    instance.free()

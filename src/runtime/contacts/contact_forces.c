@@ -11,8 +11,9 @@
  *
  * The problem is set up after the frictions have their modes, if a friction slides on a contact at rest, or if a
  * contact that its force has opened would close again. If no open contact approaches, the present forces are a
- * solution, and only their uniqueness is examined (resting_forces.c). Else the solution found sets the contacts. If
- * there is none, or more than one, or existence is unknown, the motion ends with a message.
+ * solution, and only their uniqueness is examined (resting_forces.c), unless a friction begins to slide: its direction
+ * would differ in another solution. Else the solution found sets the contacts. If there is none, or more than one, or
+ * existence is unknown, the motion ends with a message.
  */
 #include "contacts/contact_forces.h"
 
@@ -308,16 +309,35 @@ static void report_others(const struct Resolution *resolution, const struct Rest
               locking_friction(resolution, impulses, contact));
 }
 
+/*
+ * True if a friction on a selected contact begins to slide: it is at rest, and its direction follows from its
+ * acceleration. With other contacts closed it would slide in another direction, so that forces at this direction say
+ * nothing about other solutions.
+ */
+static bool any_begins_to_slide(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  double slowest = resting_speed(resolution);
+  bool begins = false;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    if (friction_sticks(resolution, i) || !(sliding_speed(resolution, i) <= slowest)) continue;
+    for (size_t k = 0; k < switches->contact_count; k++)
+      begins |= resolution->takes_part[k] != 0.0 && rests_on(switches, i, k);
+  }
+  return begins;
+}
+
 const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   struct RestingContacts resting;
   *again = false;
   const char *problem = NULL;
   bool slides = choose_resting(resolution);
   if (!slides && !any_comes_back(resolution)) return NULL;
+  bool is_unclear = any_begins_to_slide(resolution);
   if (!create_resting(resolution, &resting, &problem)) return problem;
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
-  enum RestingSolutions solutions = slides || closes ? resting_forces_solve(&resting.forces, !closes) : ONE_MOTION;
+  bool is_examined = closes || (slides && !is_unclear);
+  enum RestingSolutions solutions = is_examined ? resting_forces_solve(&resting.forces, !closes) : ONE_MOTION;
   if (!slides && solutions >= PERHAPS_NONE) {
     log_crushed(resolution, &resting.impulses, sinking);
     problem = crushed;
