@@ -212,15 +212,20 @@ def equations_of(shown):
                 yield left, left, entry.right
 
 
+# With redundant constraints the FMU evaluates at the nearest state that fulfils them: these are compared at the start.
+REDUNDANT = {"Bricard"}
+
+
 def compare(name, points=3):
     """Compare the shown equations of a system with its FMU at random times and points, except for those that are cut; return their number."""
     shown, model = listing(system_of_fmu(name)), fmu.Instance(name, FMU2Model)
     generator, rows = random.Random(name), [row for row in equations_of(shown) if not any("..." in text for text in row)]
     starts = {variable.name: variable.start for kind in ("coordinate", "velocity", "state") for variable in shown.variables[kind]}
+    spread = 0.0 if name in REDUNDANT else 0.05
     with np.errstate(all="ignore"):
         for _ in range(points):
             time = generator.uniform(0, 2) if model.description.numberOfEventIndicators == 0 else 0.0
-            put(model, {state: start + generator.uniform(-0.05, 0.05) * max(1.0, abs(start)) for state, start in starts.items()}, time)
+            put(model, {state: start + spread * generator.uniform(-1, 1) * max(1.0, abs(start)) for state, start in starts.items()}, time)
             values = Shown(model, shown, time)
             for label, left, right in rows:
                 numbers = [*values.terms(left), *(-number for number in values.terms(right))]
