@@ -123,6 +123,20 @@ def test_a_step_that_fails(archive, lagrange_fmu):  # noqa: F811
 
 
 @BOTH
+def test_messages_reach_the_simulation_that_caused_them(archive, lagrange_fmu):  # noqa: F811
+    """Also after a simulation that was started later is closed."""
+    with lagrange_fmu.start(archive("EndsInSession")) as sim:
+        for _ in range(3):
+            with lagrange_fmu.start(archive("PushedInSession")) as other:
+                other.step(0.1)
+            gc.collect()
+            with pytest.raises(lagrange_fmu.Problem, match=r"^EndsInSession cannot step from 0 s to 1.4 s: .*by a root"):
+                sim.step(1.4)
+            sim.reset()
+        assert not sim._problems and not other._problems
+
+
+@BOTH
 def test_what_is_no_step_changes_nothing(archive, lagrange_fmu):  # noqa: F811
     with lagrange_fmu.start(archive("EndsInSession")) as sim:
         sim.step(0.5)

@@ -8,6 +8,7 @@ from numbers import Real
 
 from fmpy import extract
 from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, calloc, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE, free
 from fmpy.simulation import instantiate_fmu
 
 from .co_simulation import Slave2, Slave3, check_platform
@@ -28,6 +29,23 @@ def _release(folder, instances):
 
 
 ARGUMENTS = "start_values", "fmi", "solver", "tolerance"  # of start(), beside the names of variables
+
+
+def _instantiate(folder, description, logger, has_events):
+    """
+    Return an instance for co-simulation with a logger of its own. FMPy's instantiate_fmu() sends the messages of all FMUs of FMI 2.0 to the logger of
+    the last one, even after that one is freed.
+    """
+    if description.fmiVersion.startswith("3"):
+        return instantiate_fmu(folder, description, "CoSimulation", False, True, logger, None, None, has_events, has_events)
+    fmu = FMU2Slave(guid=description.guid, unzipDirectory=folder, modelIdentifier=description.coSimulation.modelIdentifier)
+
+    def log(*words):  # a message is a format of printf()
+        logger(*words[:-1], words[-1].replace(b"%%", b"%"))
+
+    memory = fmi2CallbackAllocateMemoryTYPE(calloc), fmi2CallbackFreeMemoryTYPE(free)
+    fmu.instantiate(callbacks=fmi2CallbackFunctions(fmi2CallbackLoggerTYPE(log), *memory), loggingOn=True)
+    return fmu
 
 
 class Simulation(NamedValues):
@@ -55,7 +73,7 @@ class Simulation(NamedValues):
         has_events = self._is_third and description.coSimulation.hasEventMode
         try:
             with self._named("cannot start"):
-                self.fmu = instantiate_fmu(folder, description, "CoSimulation", False, True, log_into(self._problems), None, None, has_events, has_events)
+                self.fmu = _instantiate(folder, description, log_into(self._problems), has_events)
                 instances.append(self.fmu)
                 self._slave = (Slave3 if self._is_third else Slave2)(self.fmu, description, None)
                 self._initialize(self._start)
