@@ -8,8 +8,6 @@ from collections.abc import Iterable, Mapping
 from numbers import Real
 from pathlib import Path
 
-import numpy as np
-
 from .problem import Problem
 from .quantities import numbers_of, truth_of
 
@@ -153,6 +151,11 @@ def known(names, among, description, what="is not a variable"):
     return list(names)
 
 
+def _flat(value):
+    """Return the numbers of a number, or of nested lists and arrays."""
+    return [value] if isinstance(value, Real) else [number for part in value for number in _flat(part)]
+
+
 def checked_start(start, description, free=None, arguments=()):
     """
     Return the start values as numbers; raise Problem if one is for a variable that does not exist, or is not in `free`, by default settable().
@@ -170,6 +173,6 @@ def checked_start(start, description, free=None, arguments=()):
     numbers = numbers_of({name: truth_of(variables[name], value) for name, value in start.items()}, units_of(description))
     for name, value in numbers.items():
         kind = whole_kind(name, description)
-        if kind and not all(number in (0, 1) if kind == "a Boolean" else number % 1 == 0 for number in np.ravel(value)):
+        if kind and not all(number in (0, 1) if kind == "a Boolean" else number % 1 == 0 for number in _flat(value)):
             raise Problem(f"'{name}' is set to {start[name]!r}; expected {'True or False' if kind == 'a Boolean' else 'a whole number'}")
     return numbers

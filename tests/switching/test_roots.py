@@ -5,10 +5,14 @@ The slope of a root is infinite where it begins, but the motion is unique there:
 given by t = -2 w/k - 2 q/k^2 log(1 - k w/q).
 """
 
+import math
+
 import fmpy
 import mpmath
 import numpy as np
 import pytest
+
+from scipy.optimize import brentq
 
 from fmu import Instance, archive, build_systems
 
@@ -36,9 +40,10 @@ def outflow(t, q):
     """u(t) of u' = q - k sqrt(u), u(0) = 0."""
     if t <= 0:
         return 0.0
-    steady = mpmath.mpf(q) / K
-    root = mpmath.findroot(lambda w: -2 * w / K - 2 * steady / K * mpmath.log(1 - w / steady) - t, (steady * mpmath.mpf("1e-12"), steady * (1 - mpmath.mpf("1e-12"))), solver="anderson")
-    return float(root**2)
+    steady = q / K
+    time = lambda w: -2 * w / K - 2 * steady / K * math.log1p(-w / steady)
+    root = brentq(lambda w: time(w) - t, 0.0, steady * (1 - 1e-15), xtol=1e-15)
+    return root**2
 
 
 def motion(name, method, step, stop, *names, **values):

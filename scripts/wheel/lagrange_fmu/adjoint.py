@@ -202,9 +202,10 @@ def _objective(point, of, data, stop_time, integral, noise):
 def gradient(system, of, by, stop_time, data, integral, noise, start_values, tolerance):
     """See lagrange_fmu.gradient."""
     check_tolerance(tolerance)
+    by = some_names(by, "by")
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
         objective = _objective(point, of, data, stop_time, integral, numbers_of(noise, point.units))
-        check_names(point, objective.of, some_names(by, "by"))
+        check_names(point, objective.of, by)
         acting = acting_of(point, by)
         start, slopes = start_slopes(point, by, {})
         motion = RecordedMotion(point, objective.of, [reference for references in acting for reference in references], tolerance)
