@@ -152,7 +152,7 @@ def test_cost(lagrange_fmu, monkeypatch):  # noqa: F811
 
 
 def test_errors(lagrange_fmu):  # noqa: F811
-    for words, why in (({}, "expected the name"), ({"of": "x"}, "stop time is None"), ({"of": "x", "stop_time": math.inf}, "stop_time is inf"), ({"of": "x", "stop_time": 1, "by": ["kk"]}, "'kk' is not a parameter"),
+    for words, why in (({}, "by is empty"), ({"by": ["k"]}, "expected the name"), ({"of": "x", "by": ["k"]}, "stop time is None"), ({"of": "x", "by": ["k"], "stop_time": math.inf}, "stop_time is inf"), ({"of": "x", "stop_time": 1, "by": ["kk"]}, "'kk' is not a parameter"),
                        ({"of": "x", "stop_time": 1, "by": ["k"], "tolerance": math.nan}, "the tolerance is nan")):  # fmt: skip
         with pytest.raises(lagrange_fmu.Problem, match=why):
             lagrange_fmu.gradient(archive("Oscillator"), **words)
