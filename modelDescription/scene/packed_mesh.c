@@ -1,6 +1,6 @@
 /*
  * Vertex clustering: all points in a cell of a cubic grid become the first of them, and triangles with fewer than three
- * distinct corners vanish. The grid starts at 16-bit resolution and is coarsened by 0.7 until at most MOST_DRAWN
+ * distinct corners vanish. The grid starts at 16-bit resolution. Each coarser one has 0.7 times as many cells a side, until at most MOST_DRAWN
  * triangles are left; it ends, since a single cell leaves none. A pass costs O(n log n) for n points. J. Rossignac, P.
  * Borrel: Multi-resolution 3D approximations for rendering complex scenes, 1993.
  */

@@ -66,7 +66,7 @@ FORCES = {
 def name_of(body, method):
     return f"Given{body}{method.title()}"
 
-# Motions by inputs: the constraint or the acceleration, with what the drive moves; the ratio of the velocities of y and x.
+# Motions that an input prescribes, through a constraint or an acceleration: the elements, and the ratio of the velocity of y to that of x.
 HAND = '<input name="u" derivatives="2"/><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><constraint name="hand">u - x</constraint>'
 RATE = '<input name="s" derivatives="1"/><coordinate name="x" velocity="v"/><particle mass="1" x="x"/><constraint name="hand">s - v</constraint>'
 ACCELERATION = '<input name="a"/>' + DRIVE.format("a")

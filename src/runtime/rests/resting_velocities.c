@@ -5,13 +5,14 @@
  * velocities are projected, once at the present point and once at a point nearby, which the motion may reach without an
  * event: coordinates moved along the projected velocities, another time, other states, and inputs that may vary.
  * Velocities that the coordinates, time or inputs make 0 only for an instant are not at rest. A decision costs two
- * projections, with probability 1 it is right but for rounding errors.
+ * projections. It is correct with probability 1, up to rounding errors.
  *
  * The indicator of a branch that is linear in several velocities, sum_i a_i v_i + r, has the value r if the sum rests.
  * The same projections decide that: they take a sum at rest to 0.
  *
- * A prescribed velocity rests if it is 0, and its acceleration is 0 here and nearby. The error of the method may leave
- * it other than 0 where a drive stops; so it also rests if it is small, and accelerated until the event.
+ * A prescribed velocity rests if it is 0, and its acceleration is 0 here and nearby. Where a prescribed
+ * motion stops, the error of integration may leave a small velocity. So a velocity also counts as at rest if it is small
+ * and was accelerated until the event.
  */
 #include "rests/resting_velocities.h"
 
@@ -28,15 +29,15 @@
 static const double projected_rest = 1e-10;
 
 /*
- * In tolerances, relative to the scale: the velocity that an integration of a drive to rest may leave. Importers keep
- * the tolerance less strictly.
+ * In tolerances times the scale: the velocity that integration may leave where a prescribed motion stops. Importers
+ * control their error less strictly.
  */
 static const double integrated_rest = 10.0, integrated_rest_in_exchange = 1000.0;
 
-/* Largest relative distance of coordinates, inputs and states to the point nearby; and of time, in s. */
+/* Largest distance of the point nearby: relative, of coordinates, inputs and states; and in s, of time. */
 static const double nearby = 0.01, later = 0.3;
 
-/* The point of a decision; the state is its own. */
+/* A point at which velocities are tried. Its state is in workspace of the resolution. */
 struct Probe {
   struct Resolution *resolution;
   struct Point point;
@@ -50,7 +51,7 @@ static bool has_kind(const struct SwitchTable *switches, enum RestingKind kind) 
   return has;
 }
 
-/* Returns a random number of size 0.5 to 1. Constants by D. E. Knuth and H. W. Lewis. */
+/* Returns a random number of magnitude 0.5 to 1, of either sign, by the generator of D. E. Knuth and H. W. Lewis. */
 static double random_number(struct Probe *probe) {
   probe->seed = probe->seed * 1664525u + 1013904223u;
   double number = (double)(probe->seed >> 8) / (double)(1u << 24);
@@ -142,7 +143,7 @@ static void find_sums(const struct Probe *probe, double *sums) {
     resolution->switches->resting_sums(&probe->point, resolution->acceleration, sums);
 }
 
-/* Projects random velocities at the probe, and lets those move that do not become 0. */
+/* Projects random velocities at the probe, and marks those that do not become 0 as moving. */
 static void find_moving(struct Probe *probe) {
   struct Resolution *resolution = probe->resolution;
   const struct SwitchTable *switches = resolution->switches;

@@ -32,8 +32,8 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
 }
 
 /*
- * Reads the text of an element as an expression. If modes occur in it, also reads it as a <set> sees it: the value at the instant
- * of an event, where pieces have plain values, and the whole expression.
+ * Reads the text of an element as an expression. If modes occur in it, reads it twice more for <set>: with abs, min and if
+ * evaluated directly at the event, and as the unsplit expression.
  */
 static struct Quantity read_text(struct Reader *reader, xmlNodePtr node, const char *what) {
   struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);

@@ -25,8 +25,8 @@
 #include "read/xml/nodes.h"
 
 /*
- * The tetrahedron over a triangle: corners relative to the apex, and signed volume, negative if the apex is outside of
- * the face.
+ * The tetrahedron over a triangle: corners relative to the apex, and signed volume, negative if the apex lies on the
+ * outer side of the face.
  */
 struct Pyramid {
   double corners[3][3], volume;
@@ -68,7 +68,7 @@ static double mass_of(const struct Pyramid *pyramid, bool is_exact) {
   return is_exact ? pyramid->volume : fabs(pyramid->volume);
 }
 
-/* Adds the centre of mass of all tetrahedra to their apex. Returns their mass. */
+/* Moves center, the apex, to the centre of mass of all tetrahedra. Returns their mass. */
 static double find_center(const struct Mesh *mesh, bool is_exact, double center[3]) {
   double mass = 0, sum[3] = {0};
   for (size_t i = 0; i < mesh->triangle_count; i++) {
