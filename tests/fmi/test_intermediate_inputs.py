@@ -35,19 +35,6 @@ def own_systems():
     fmu.build_systems("intermediate-inputs", {"GuidedHand": HAND, "PushedBlock": STOP}, versions=[3])
 
 
-@pytest.fixture
-def opened():
-    instances = []
-
-    def open_named(name, **options):
-        instances.append(fmi3.Instance(name, **options))
-        return instances[-1]
-
-    yield open_named
-    for instance in instances:
-        instance.free()
-
-
 def wave(t):
     return np.sin(5 * t)
 

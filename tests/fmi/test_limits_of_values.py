@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 
-import fmi3
 from building import build_systems
 from fmi3 import Supplier, supplied
 from fmu import DISCARD
@@ -56,19 +55,6 @@ PISTON = """<system name="Piston"><input name="u" start="0.5" min="0" max="2" de
 @pytest.fixture(scope="module")
 def filled():
     build_systems("filled", {"Filled": VALVE.replace("Valve", "Filled").replace('min="0"/>', 'min="0" max="2"/>'), "Piston": PISTON}, versions=(2, 3))
-
-
-@pytest.fixture
-def opened():
-    instances = []
-
-    def open_instance(name, **options):
-        instances.append(fmi3.Instance(name, **options))
-        return instances[-1]
-
-    yield open_instance
-    for instance in instances:
-        instance.free()
 
 
 @pytest.mark.parametrize("derivatives", [
