@@ -375,7 +375,7 @@ def gradient(
     """
     from .adjoint import gradient
 
-    return gradient(system, of, names_of(by, "by"), stop_time, data, integral, numbers_by_name(noise, "noise"), numbers_by_name(start_values), tolerance)
+    return gradient(system, of, some_names(by, "by"), stop_time, data, integral, numbers_by_name(noise, "noise"), numbers_by_name(start_values), tolerance)
 
 
 @checked

@@ -17,9 +17,8 @@ from .experiment import Experiment, check_noise
 from .model_exchange import opened
 from .problem import Problem
 from .quantities import numbers_of
-from .sensitivity import DifferentiableMotion, acting_of, check_names, check_tolerance, start_slopes
+from .sensitivity import DifferentiableMotion, acting_of, check_names, start_slopes
 from .stepping import Steps
-from .variables import some_names
 
 from scipy.integrate import OdeSolution  # isort: skip
 
@@ -201,8 +200,6 @@ def _objective(point, of, data, stop_time, integral, noise):
 
 def gradient(system, of, by, stop_time, data, integral, noise, start_values, tolerance):
     """See lagrange_fmu.gradient."""
-    check_tolerance(tolerance)
-    by = some_names(by, "by")
     with opened(system, dict(start_values), what="be followed", adjoint=True) as point:
         objective = _objective(point, of, data, stop_time, integral, numbers_of(noise, point.units))
         check_names(point, objective.of, by)

@@ -245,11 +245,6 @@ def check_once(names):
             raise Problem(f"'{name}' is given twice; expected each name once")
 
 
-def check_tolerance(tolerance):
-    if not 0 < tolerance < 1:
-        raise Problem(f"the tolerance is {tolerance:g}; expected one between 0 and 1")
-
-
 def check_names(point, of, by):
     check_once(by)
     for names, among, what in ((of, {*point.outputs, *point.derivatives, *point.states}, "an output, a state or its derivative"), (by, {*point.settable}, "a parameter, a start value or an input")):

@@ -21,7 +21,7 @@ from .model_exchange import along, opened, lagc_options
 from .models import Slave2
 from .problem import Problem
 from .running import is_fmu
-from .sensitivity import DifferentiableMotion, acting_of, check_names, check_tolerance, start_slopes
+from .sensitivity import DifferentiableMotion, acting_of, check_names, start_slopes
 
 CHECKED = 1e-6  # relative tolerance of the comparison with directional derivatives at the start
 DIFFERENCE = 1e-4  # first step of differences, relative to the value
@@ -171,7 +171,6 @@ def sensitivities(system, of, by, times, start_values, tolerance):
         raise Problem(f"the times have the shape {times.shape}; expected a list of numbers, in s")
     if not (times.size and np.isfinite(times).all() and times[0] >= 0 and (np.diff(times) > 0).all()):
         raise Problem(f"the times are {', '.join(f'{time:g}' for time in times)} s; expected one at least, from 0 s on, each later than the one before")
-    check_tolerance(tolerance)
     with followed(system, dict(start_values), by) as point:
         check_names(point, of, by)
         found = motion(point, of, by, tolerance).over(np.union1d([0.0], times))
