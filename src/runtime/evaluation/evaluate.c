@@ -116,7 +116,9 @@ enum Status evaluate_fmu_state(struct Instance *instance, double *derivative) {
   if (status != STATUS_DONE) return status;
   struct Point point = evaluate_point(instance);
   if (evaluate_derivatives(instance, &point, derivative)) {
-    memcpy(derivative, instance->state + lagrangian.coordinate_count, lagrangian.coordinate_count * sizeof *derivative);
+    size_t n = lagrangian.coordinate_count;
+    /* The coordinates change by the importer's own velocities. */
+    if (point.state != instance->state) memcpy(derivative, instance->state + n, n * sizeof *derivative);
     return STATUS_DONE;
   }
   if (return_to_domain(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;

@@ -82,14 +82,12 @@ static double error_bound_of_rate(const struct Resolution *resolution, size_t br
 
 /*
  * True if the piece of the mode has no value here: rounding has left the indicator on the other side of 0, where the
- * piece, such as a root, does not exist. The event resolution then does not return to it.
+ * piece, such as a root, does not exist.
  */
 static bool has_no_value(const struct Resolution *resolution, size_t branch, double mode) {
   double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
   bool moves = !isnan(rate) && are_finite(resolution_accelerations(resolution), lagrangian.coordinate_count);
-  bool is_absent = !moves && mode * resolution->value[branch] < 0.0;
-  if (is_absent) resolution->absent[branch] = mode;
-  return is_absent;
+  return !moves && mode * resolution->value[branch] < 0.0;
 }
 
 /* Returns the sign of an indicator: its own, or at 0 that of its rate. */
@@ -111,10 +109,16 @@ static double sign_of_branch(const struct Resolution *resolution, size_t branch)
   return was_set || stays_at_zero(resolution, branch) ? 0.0 : mode;
 }
 
-/* Returns the next mode of a branch: the sign of its indicator, if the piece of this sign has a value here. */
+/*
+ * Returns the next mode of a branch: the sign of its indicator, if the piece of this sign has a value here. The event
+ * resolution does not return to a piece without one.
+ */
 static double branch_mode(const struct Resolution *resolution, size_t branch) {
   double mode = mode_of(resolution, resolution->switches->branches[branch].mode);
-  if (has_no_value(resolution, branch, mode)) return -mode;
+  if (has_no_value(resolution, branch, mode)) {
+    resolution->absent[branch] = mode;
+    return -mode;
+  }
   double sign = sign_of_branch(resolution, branch);
   return sign != 0.0 && sign == resolution->absent[branch] ? mode : sign;
 }

@@ -23,9 +23,9 @@ static const double nearest_centre = 1e-5;
 
 static bool explain_ball(struct Instance *instance, enum Status status, double time) {
   const struct SwitchTable *switches = lagrangian.switches;
+  if (switches->ball_count == 0) return false;
   struct Resolution resolution = resolution_of(instance);
   struct Point point = solver_point(instance, time, instance->state);
-  if (switches->ball_count == 0) return false;
   switches->ball_distances(&point, resolution.acceleration, resolution.ball_distance);
   size_t ball = 0;
   while (ball < switches->ball_count && !(resolution.ball_distance[ball] <= nearest_centre)) ball++;
