@@ -78,8 +78,8 @@ struct ScalarVariable {
   bool is_reinitialized; /* a state that events or constraints may change */
   double start, minimum, maximum;
   /*
-   * For messages, the parameters on which a calculated parameter depends, or the start value of a state or mode that
-   * is an expression; NULL for all other variables.
+   * For messages: the parameters on which a calculated parameter depends, or on which the start value of a state or
+   * mode depends. NULL for all other variables.
    */
   const char *follows_from;
 };
@@ -175,10 +175,10 @@ struct FrictionMetadata {
 };
 
 /*
- * Coulomb friction in the plane of two velocities. Two consecutive frictions, "along" and "across", share one mode: 1
- * while it slides, 0 while it sticks, -1 while it slips along the slip direction, which is given, as at the onset of
- * slip. The mode may change if the speed falls to lower, rises to upper, or if the velocity leaves the slip direction
- * backwards or sideways by as much.
+ * Coulomb friction in the plane of two velocities. Two consecutive frictions, "along" and "across", share one mode.
+ * It is 1 while the friction slides, 0 while it sticks, and -1 while it slips along a given slip direction, as at
+ * the onset of slip. The mode may change if the speed falls to lower or rises to upper. It may also change if the
+ * velocity leaves the slip direction backwards or sideways by as much.
  */
 struct PlaneMetadata {
   size_t along;             /* index of the friction along; the one across follows */
@@ -283,11 +283,12 @@ struct SwitchTable {
 };
 
 /*
- * Layout of value[] of struct SwitchTable: the indicators of the branches, then their time derivatives; for each
- * contact and each friction the values of the enums below; the conditions of the events; the assigned values; the
- * kinetic energy, the potential energy and the momenta; for each friction in a plane the scale of its speed; for each
- * sample its period and offset. FRICTION_STICTION and FRICTION_FORCE are the largest static and the kinetic friction
- * force; ..._BACK are those against negative velocities.
+ * Layout of value[] of struct SwitchTable. It begins with the indicators of the branches and their time
+ * derivatives. For each contact and each friction it has the values of the enums below. The conditions of the
+ * events and the assigned values follow, then the kinetic energy, the potential energy and the momenta. Last come
+ * the scale of the speed for each friction in a plane, and period and offset for each sample. FRICTION_STICTION and
+ * FRICTION_FORCE are the largest static and the kinetic friction force; ..._BACK are those against negative
+ * velocities.
  */
 enum { CONTACT_GAP, CONTACT_RATE, CONTACT_ACCELERATION, CONTACT_RESTITUTION, CONTACT_VALUES };
 enum {
@@ -376,7 +377,7 @@ struct EventLaws;
 
 /*
  * Functions below that return an int return 0, or 1 + the coordinate in which the mass matrix is singular or not
- * positive definite; their results are then undefined.
+ * positive definite. In the latter case their results are undefined.
  */
 
 /* Metadata for the choice of steps. */
@@ -450,9 +451,10 @@ struct ConstraintTable {
   int (*accelerations_along)(const struct Point *point, const struct Seed *seed, Real *acceleration);
   /*
    * Computes the least correction, in the metric of M, that returns a state to the constraints. correction[n + 3 m]
-   * holds the changes of the coordinates; of each constraint the negative residual; its pivot, infinite if it depends
-   * on others; and the norm of its row of J. seed->state holds the changes made so far. correct_velocities() does the
-   * same for the velocities, in which the constraints are linear, at fixed coordinates.
+   * holds the changes of the coordinates, then three numbers of each constraint. These are the negative residual,
+   * the pivot (infinite if it depends on others), and the norm of its row of J. seed->state holds the changes made
+   * so far. correct_velocities() does the same for the velocities, in which the constraints are linear, at fixed
+   * coordinates.
    */
   int (*correct_positions)(const struct Point *point, const struct Seed *seed, Real *correction);
   int (*correct_velocities)(const struct Point *point, Real *correction);
@@ -514,8 +516,9 @@ struct Lagrangian {
   /* Computes the derivative of derivatives() along seed. */
   int (*directional)(const struct Point *point, const struct Seed *seed, Real *derivative);
   /*
-   * Computes the gradient of the sum of seed->state times the derivatives of the state and seed->result times the
-   * outputs, by each state, input, parameter, and by time. NULL unless lagc ran with --adjoint.
+   * Computes the gradient of a weighted sum by each state, input, parameter, and by time. The sum has the
+   * derivatives of the state times seed->state, and the outputs times seed->result. NULL unless lagc ran with
+   * --adjoint.
    */
   int (*weighted_gradient)(const struct Point *point, const struct Seed *seed, Real *gradient);
   /*

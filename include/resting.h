@@ -3,12 +3,12 @@
 #define RESTING_H
 
 enum RestingKind {
-  RESTING_VELOCITY, /* of a coordinate */
-  RESTING_DRIVE,    /* of a coordinate with a prescribed motion */
-  RESTING_SUM       /* of velocities, in the indicator of a branch */
+  RESTING_VELOCITY,   /* of a coordinate */
+  RESTING_PRESCRIBED, /* of a coordinate with a prescribed motion */
+  RESTING_SUM         /* of velocities, in the indicator of a branch */
 };
 
-/* Modes of such a velocity. The acceleration of a drive that moves is 0 here and nearby. */
+/* Modes of such a velocity. A prescribed velocity that moves has no acceleration here and nearby. */
 enum RestingMode { VELOCITY_RESTS, VELOCITY_MOVES, VELOCITY_ACCELERATES };
 
 #endif

@@ -1,6 +1,6 @@
 /*
  * Bounds the step of a Taylor method by the arguments of elementary functions. The coefficients of a solution alone
- * cannot bound it: exp, tanh or a power may be flat at the start of a step, so that all coefficients vanish, and rise
+ * cannot bound it. exp, tanh or a power may be flat at the start of a step, where all coefficients vanish, and rise
  * steeply within it.
  *
  * A function f takes the polynomial u(t). On the disc |t| <= h of the complex plane, |u(t) - u_0| is at most the
@@ -8,9 +8,9 @@
  *
  *  e(h) = sum over k >= 1 of |u_k| h^k.
  *
- * Each bound is a condition e(h) <= c: f then changes by a factor of at most e^5 in the disc and has no singularity
- * there, or it is constant to the last bit. By Cauchy's estimate (L. V. Ahlfors: Complex Analysis, chapter 4) the
- * coefficients of f then decay like those of a geometric series, so that no peak, step or pole of any width is skipped.
+ * Each bound is a condition e(h) <= c. Then f is constant to the last bit, or it changes by a factor of at most e^5
+ * in the disc and has no singularity there. By Cauchy's estimate (L. V. Ahlfors: Complex Analysis, chapter 4) the
+ * coefficients of f then decay like those of a geometric series. So no peak, step or pole of any width is skipped.
  * For whole powers a monotone u also suffices, for signs one that moves away from 0.
  *
  * e(h) increases with h. The step is divided by 8 until the condition holds, then refined by four bisections of its

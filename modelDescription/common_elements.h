@@ -15,10 +15,10 @@ void write_log_categories(xmlTextWriterPtr writer);
 void write_experiment(xmlTextWriterPtr writer, const struct Model *model);
 
 /*
- * Writes the data that pages need in addition to the variables: <scene>, see scene.h, and <presets>, with
- * <at name value/> in each <preset name description>, as in the system. Each is in an annotation of its own, since one
- * of FMI 2.0 has at most one element. all, each: names of the elements around all of them and around each; attribute:
- * that of each with its name.
+ * Writes the data that pages need in addition to the variables. These are <scene>, see scene.h, and <presets>,
+ * whose <preset name description> contain <at name value/> as in the system. Each is in an annotation of its own,
+ * since one of FMI 2.0 has at most one element. all, each: names of the elements around all of them and around
+ * each; attribute: that of each with its name.
  */
 void write_annotations(xmlTextWriterPtr writer, const struct Model *model, const char *all, const char *each,
                        const char *attribute);

@@ -1,9 +1,9 @@
 """
 Compare the run time of the Taylor solver at equal error.
 
-The others are the best method of SUNDIALS behind the same FMI functions, a Taylor loop written by hand, and heyoka at its default tolerance;
-then follow chains of 1 to 32 rods. Times are the minimum of several repeats of the doStep loop, in microseconds. Errors are those at the end,
-against a reference of 20 digits.
+The others are the best method of SUNDIALS behind the same FMI functions, a Taylor loop written by hand, and heyoka at its default tolerance. Chains
+of 1 to 32 rods follow. Times are the minimum of several repeats of the doStep loop, in microseconds. Errors are those at the end, against a reference
+of 20 digits.
 """
 
 import math

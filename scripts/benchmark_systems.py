@@ -2,7 +2,7 @@
 Compare programs that simulate many runs of several systems, on one core.
 
 The programs are the lanes of src/ensemble, the FMU, run by run, heyoka's batch mode in as many lanes, MuJoCo's rollout, and SciPy. The table has the
-processor time of a run in microseconds, the shortest of several repeats in turns, without compilation, and the largest difference of the
+processor time of a run in microseconds, without compilation: the shortest of several repeats in turns. It also has the largest difference of the
 velocities at the end from those of the FMU.
 """
 

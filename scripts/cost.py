@@ -1,8 +1,8 @@
 """
 Measure the cost of making an FMU, and print tables.
 
-They compare lagc with SymPy's LagrangesMethod and cse; whole FMUs, with C compiler and packing; the C of mechanisms and robots by gcc, clang and
-zig; and the step of a large stiff system by each implicit method. A table shows where a measurement reaches the limit of time.
+They compare lagc with SymPy's LagrangesMethod and cse, and whole FMUs, with C compiler and packing. They also compare the C of mechanisms and robots
+by gcc, clang and zig, and the step of a large stiff system by each implicit method. A table shows where a measurement reaches the limit of time.
 """
 
 import math

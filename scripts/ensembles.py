@@ -1,8 +1,8 @@
 """
 Compute many runs of an FMU at once, in SIMD lanes.
 
-The equations in the FMU's C sources are compiled over the vectors of this machine's processor (src/ensemble), and once more for a single run,
-which handles events and constraints. This works for systems with Taylor series. Also a module of the wheel.
+The equations in the FMU's C sources are compiled over the vectors of this machine's processor (src/ensemble). They are compiled once more for a
+single run, which handles events and constraints. This works for systems with Taylor series. Also a module of the wheel.
 """
 
 import sys

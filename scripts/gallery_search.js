@@ -1,4 +1,5 @@
-// Colors of the site, and its search for pages that are opened as files, where browsers do not start workers: it runs in the page, and loads its index as a script.
+// Colors of the site, and its search for pages that are opened as files. There browsers do not start workers, so the search runs in the page and
+// loads its index as a script.
 "use strict";
 
 if (location.protocol === "file:") {

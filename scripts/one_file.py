@@ -1,8 +1,8 @@
 """
 Write the C source of an FMU as one file, made of the system and the runtime: one_file.py ROOT GLOBAL_NAMES VERSION SYSTEM.c NAME FILE
 
-GLOBAL_NAMES is the output of nm for the compiled runtime. The names in it get the FMU's name and the version of FMI as a prefix, so that
-several FMUs, and both versions of one, can be linked into one program.
+GLOBAL_NAMES is the output of nm for the compiled runtime. The names in it get the FMU's name and the version of FMI as a prefix. So several FMUs, and
+both versions of one, can be linked into one program.
 """
 
 import re

@@ -59,7 +59,7 @@ def page_of(anchor, sections):
 
 
 def relink(text, old, new, sections):
-    """Return a page that has moved from old to new, with links to the same targets as before; links to the reference lead to its parts."""
+    """Return a page that has moved from old to new, with links to the same targets as before. Links to the reference lead to its parts."""
 
     def link(match):
         path, _, anchor = match.group(1).partition("#")
@@ -93,7 +93,10 @@ def example_of(name, page, sections):
 
 
 def element_page(name, row, schema, sections):
-    """Return the page of an element as Markdown, whose links are those of a page in fmu/; `row` has the elements in the same row of the table of elements."""
+    """
+    Return the page of an element as Markdown, whose links are those of a page in fmu/. `row` has the elements in the same row of the table of
+    elements.
+    """
     lines = [f"# `<{name}>`", ""]
     for parents, declaration in schema.kinds(name):
         sentence, attributes, contents, has_text = schema.frame(declaration)

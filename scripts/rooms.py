@@ -1,8 +1,8 @@
 """
 Check the layers of the C sources.
 
-lagc with the laboratory, the runtime of FMUs, and the ensemble each consist of rooms: folders of at most a dozen modules, where a module is a .c
-file and its .h file. An #include leads to the same room or to one that is listed before it. Prints violations; no output means there are none.
+lagc with the laboratory, the runtime of FMUs, and the ensemble each consist of rooms. A room is a folder of at most a dozen modules, and a module is
+a .c file with its .h file. An #include leads to the same room or to one that is listed before it. Prints violations; no output means there are none.
 """
 
 import re

@@ -1,7 +1,7 @@
 """
 Run an FMU over a grid or a random sample of start values and parameters, on all cores or on a Dask cluster.
 
-Each run is a row of a Parquet file: the varied values, the states at the end, the error of the energy, the run time, and the message of a failure.
+Each run is a row of a Parquet file. It has the varied values, the states at the end, the error of the energy, the run time, and the message of a failure.
 """
 
 import argparse

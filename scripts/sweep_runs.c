@@ -51,8 +51,8 @@ enum RecordKind {
 };
 
 /*
- * A column of the result: the value of a sampled variable at a time, its maximum or minimum, the number of events, or
- * the time of the first; of all, or of the contact or friction with a name.
+ * A column of the result: the value of a sampled variable at a time, its maximum or minimum, or the number or first
+ * time of events. Events are all, or those of the contact or friction with a name.
  */
 struct Record {
   size_t kind, variable;

@@ -1,4 +1,4 @@
-"""Compute a chunk of a sweep in a thread or in a worker of a cluster: from the bytes of an FMU to the bytes of a Parquet table."""
+"""Compute a chunk of a sweep in a thread or in a worker of a cluster. It takes the bytes of an FMU and returns the bytes of a Parquet table."""
 
 import hashlib
 import io

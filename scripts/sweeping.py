@@ -1,8 +1,8 @@
 """
 Run an FMU over a grid or a random sample of start values and parameters.
 
-Each run is a row of one Parquet file: the varied values, the states at the end, the relative error of the energy, the run time, and the message
-of a failure. The energy has an error only if the FMU's description of totalEnergy states a conservation law. Finished chunks of runs are kept
+Each run is a row of one Parquet file. It has the varied values, the states at the end, the relative error of the energy, the run time, and the
+message of a failure. The energy has an error only if the FMU's description of totalEnergy states a conservation law. Finished chunks of runs are kept
 beside the file until all are complete, so that the same command continues after a kill. Also a module of the wheel.
 """
 

@@ -6,8 +6,8 @@
 #include "solids.h"
 
 /*
- * Returns the values of the nodes of the lines' graph, at the symbols' start values and these values of the model's
- * nodes, which are on the constraints.
+ * Returns the values of the nodes of the lines' graph at the symbols' start values. The given values of the model's
+ * nodes are on the constraints.
  */
 double *values_of_lines(const struct Model *model, const double *values);
 

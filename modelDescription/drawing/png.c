@@ -1,7 +1,8 @@
 /*
- * A rasterizer and a PNG writer (ISO/IEC 15948). The coverage of a pixel by a shape follows from the signed distance
- * of its centre to the edge, clamped to one pixel, which gives smooth edges. Each shape costs its bounding box times
- * its lines. The image is stored without compression (RFC 1950, RFC 1951), as the FMU's archive compresses it.
+ * A rasterizer and a PNG writer (ISO/IEC 15948). The coverage of a pixel by a shape follows from the signed
+ * distance of its centre to the edge. Clamped to one pixel, it gives smooth edges. Each shape costs its bounding
+ * box times its lines. The image is stored without compression (RFC 1950, RFC 1951), as the FMU's archive
+ * compresses it.
  */
 #include "png.h"
 

@@ -212,7 +212,7 @@ static void write_state_space(const struct Derivation *derivation) {
 static bool conserves_energy(const struct Page *page) {
   const struct Model *model = page->model;
   Node whole = subtract(model->graph, model->energies.kinetic.node, model->energies.potential.node);
-  return !model->forces.any && !model->energies.driven && model->prescribed.constraint == NULL &&
+  return !model->forces.any && !model->energies.has_prescribed && model->prescribed.constraint == NULL &&
          page->summary->is_autonomous && !graph_depends_on(model->graph, whole, INPUT);
 }
 

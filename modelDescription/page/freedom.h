@@ -5,8 +5,8 @@
 #include "mechanics/equations.h"
 
 /*
- * Returns the rank of the Jacobian of the constraints that always hold, those of contacts and frictions excluded, at
- * the start values; by Gaussian elimination with complete pivoting.
+ * Returns the rank of the Jacobian of the permanent constraints at the start values, without those of contacts and
+ * frictions. Uses Gaussian elimination with complete pivoting.
  */
 size_t constraint_rank(const struct Model *model, const struct Equations *equations);
 

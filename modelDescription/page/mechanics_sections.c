@@ -11,11 +11,11 @@ static const char *balance_of(const struct Model *model, bool autonomous) {
   if (model->prescribed.constraint != NULL)
     return "A constraint depends on time or inputs: its force does work, so that totalEnergy is not constant even "
            "without other forces.";
-  if (!model->energies.driven && autonomous)
+  if (!model->energies.has_prescribed && autonomous)
     return model->forces.any
                ? "totalEnergy changes by the work of the non-conservative forces alone: its derivative is P."
                : "totalEnergy is constant.";
-  if (!model->energies.driven)
+  if (!model->energies.has_prescribed)
     return "L depends on time explicitly: the derivative of totalEnergy is the power of the non-conservative forces "
            "less the partial derivative dL/dt, so that totalEnergy is not constant even without forces.";
   if (autonomous)

@@ -19,8 +19,9 @@ struct Configurations {
 struct Configurations configurations_of(const struct Model *model, const struct NodeList *wanted);
 
 /*
- * Returns the values of the nodes at the start configuration plus offsets (NULL: none), projected onto the constraints
- * by the least change of the coordinates; indexed by node. Returns NULL if the projection fails.
+ * Returns the values of the nodes, indexed by node, at the start configuration plus offsets (NULL: none). The
+ * configuration is projected onto the constraints by the least change of the coordinates. Returns NULL if the
+ * projection fails.
  */
 double *values_at(const struct Configurations *configurations, const double *offsets);
 

@@ -1,7 +1,7 @@
 /*
  * Coordinates of joints as linear combinations of parameters, found by sampling. Changing one parameter at a time
- * gives the coefficient of each, by a difference quotient; TRIALS changes of all parameters at once confirm or reject
- * that the coordinate is linear. Costs (parameters + TRIALS) searches for all joints.
+ * gives the coefficient of each, by a difference quotient. TRIALS changes of all parameters at once confirm or
+ * reject that the coordinate is linear. Costs (parameters + TRIALS) searches for all joints.
  */
 #include "formulas.h"
 

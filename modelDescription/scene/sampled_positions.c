@@ -7,8 +7,8 @@
 #include "configurations.h"
 
 /*
- * Index of the base; number of samples without constraints, which overdetermine every test; constraints up to which
- * they are taken into account, as the cost of a test grows with their third power.
+ * Index of the base. Number of samples without constraints, which overdetermine every test. Largest number of
+ * constraints taken into account, as the cost of a test grows with its third power.
  */
 enum { BASE = 0, FEWEST = 8, MOST_CONSTRAINTS = 16 };
 

@@ -1,7 +1,7 @@
 """
 Couple a cart and a pendulum that are split at the hinge.
 
-The input of the cart is the force H of the rod, and its output the acceleration a; the pendulum has the input a and the output H. Both have direct
+The input of the cart is the force H of the rod, and its output the acceleration a. The pendulum has the input a and the output H. Both have direct
 feedthrough, so that each communication point is an algebraic loop:
 
     H = h(theta, omega) - m sin(theta)^2 a,    M a = H
@@ -115,8 +115,8 @@ def theory(scheme, degree):
     """
     Return the limit of r = m / M in the limit of short steps, in which the rod stays horizontal.
 
-    An error of the force is multiplied by z in each step: z = -r e(z) for Gauss-Seidel, z^2 = -r e(z)^2 for Jacobi, where e is the extrapolation
-    by a polynomial of this degree from 1, 1/z, 1/z^2. A scheme is stable if all |z| <= 1.
+    An error of the force is multiplied by z in each step: z = -r e(z) for Gauss-Seidel, z^2 = -r e(z)^2 for Jacobi. Here e is the extrapolation by a
+    polynomial of this degree from 1, 1/z, 1/z^2. A scheme is stable if all |z| <= 1.
     """
     if scheme in ("fixed_point", "newton"):
         return 1.0 if scheme == "fixed_point" else np.inf

@@ -1,6 +1,6 @@
 """
-Model exchange of constrained systems by FMPy's CVode, as a table: evaluations, events for projection, run time, and the largest error of a
-state, in tolerances, beside that of the same motion in minimal coordinates (minimal.py).
+Tabulate model exchange of constrained systems by FMPy's CVode: evaluations, events for projection, run time, and the largest error of a state in
+tolerances. The same motion in minimal coordinates (minimal.py) is beside it.
 
 The error is |x - x0|/max(1, |x0|), where x0 is by the FMU's own solver at a tolerance of 1e-13. Both errors contain the integrator's errors
 along the constraints, as the motion amplifies them. Their quotient is the price of the constraints.

@@ -3,7 +3,7 @@ Simulate FMUs in importers that are Python packages. Each function simulates one
 
     run(archive, kind, end, outputs)
 
-`archive` is the path of an FMU of FMI 2.0 or 3.0; `kind` is "CS" for co-simulation or "ME" for model exchange; `end` is in s; `outputs` are names.
+`archive` is the path of an FMU of FMI 2.0 or 3.0. `kind` is "CS" for co-simulation or "ME" for model exchange, `end` is in s, and `outputs` are names.
 In model exchange importers integrate with the relative tolerance TOLERANCE; in co-simulation masters step by STEP.
 """
 

@@ -29,7 +29,10 @@ def _named_in(file):
 
 
 def files_of(system):
-    """Return a dict of "files", the texts of a system's files by their paths in a common folder, and "file", the path of the system's own."""
+    """
+    Return a dict of "files" and "file". "files" has the texts of a system's files by their paths in a common folder; "file" is the path of the
+    system's own.
+    """
     found = [Path(system).resolve()]
     for file in found:
         mesh = next((other for other in _named_in(file) if other.suffix.lower() in MESHES), None)
@@ -65,8 +68,8 @@ def language():
 
 def editor_of(system, laboratory, examples=None, home=None):
     """
-    Return the page as text; `laboratory` is the path of laboratory.wasm, `examples` has further systems, as of files_of(), by name: the page opens
-    that of its address behind "#". `home` is the address of a page to which it links.
+    Return the page as text. `laboratory` is the path of laboratory.wasm. `examples` has further systems by name, as of files_of(); the page opens the
+    one that its address names after "#". `home` is the address of a page to which it links.
     """
     if not Path(laboratory).exists():
         raise Problem(f"there is no {laboratory}, which derives systems in the page; run scripts/laboratory")

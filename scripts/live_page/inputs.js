@@ -7,7 +7,7 @@ const DEAD_ZONE = 0.12; // deflection of a stick that counts as 0, since sticks 
 let keyInputs = []; // [index of the variable, control] of the inputs that keys and sticks set
 const stickMoves = [false, false]; // true while a stick determines the input
 
-// Sets an input to a share, from -1 to 1, of its slider's range on that side of its value at the start, or that of a preset.
+// Sets an input to a share, from -1 to 1, of its slider's range on that side of the start value, or of the preset's value.
 function applyShare(i, share) {
   const [index, control] = keyInputs[i], { idle } = control;
   const value = idle + share * (share > 0 ? control.high - idle : idle - control.low);

@@ -62,7 +62,7 @@ class Point {
 // True for a rate that is a state itself, such as der(x) = v.
 const isState = (row) => row.filter((value) => value !== 0).length === 1 && row.includes(1);
 
-// Returns the indices of independent rows, as many as there are columns: the first ones whose distance from the span of those before is large enough.
+// Returns the indices of as many independent rows as there are columns. They are the first whose distance from the span of those before is large enough.
 function independentRows(rows, shares) {
   let rest = rows.map((row) => [...row]);
   const chosen = rows[0].map(() => {

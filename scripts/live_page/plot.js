@@ -22,7 +22,7 @@ function formatted(value, digits = 4) {
 }
 
 class Plot {
-  // history: a History; section: a History that is drawn as points, if it has any and the plot is not against time; choices: names and units of
+  // history: a History. section: a History that is drawn as points, if it has any and the plot is not against time. choices: names and units of
   // the variables; columns: indices of the drawn ones; abscissa: index of the horizontal variable, or -1 for the time.
   constructor(history, section, choices, columns, abscissa = -1) {
     Object.assign(this, { history, section, choices, columns, abscissa, cursor: null });

@@ -600,7 +600,7 @@ class Scene {
     }
   }
 
-  // True if the ends of a ghost's line are known: formulas have the parameters of the first run, which may be others in a ghost that keeps its own.
+  // True if the ends of a ghost's line are known. Formulas have the parameters of the first run; a ghost that keeps its own may have others.
   isKnown(line) {
     return this.options.ghost !== "kept" || (line.from !== undefined && line.to !== undefined);
   }

@@ -39,7 +39,8 @@ function attributesFrom(text, tokens) {
   return tokens.slice(0, end < 0 ? undefined : end).filter(([kind]) => kind === "attribute").map(([, begin, after]) => text.slice(begin, after));
 }
 
-// Returns the context of a position: its kind, the part of the word before it, the element, its parent, its attributes (without the one at the position), and the attribute before it.
+// Returns the context of a position: its kind, the part of the word before it, and the attribute before it. It also has the element, its parent, and
+// its attributes without the one at the position.
 function contextAt(text, at) {
   const open = [], tokens = tokensOf(text);
   let element = "", attributes = [];

@@ -22,7 +22,7 @@ function reportError(problem, content = {}) {
   post("rejected", { message: problem.message, ...content });
 }
 
-// Returns the length of the next step: at most the FMU's step size, at least 30 steps per second of wall-clock time, and ending at a period's end.
+// Returns the length of the next step. It is at most the FMU's step size, gives at least 30 steps per second of wall-clock time, and ends at a period's end.
 function stepLength() {
   const length = description.stepSize / Math.max(1, Math.ceil((description.stepSize * 30) / speed - 1e-9));
   if (!(period > 0)) return length;
@@ -137,7 +137,7 @@ function startGhost(ghost) {
   }
 }
 
-// True if a setting applies to a run: the settings of a ghost that keeps them do not change, but for inputs, which both runs share.
+// True if a setting applies to a run. The settings of a ghost that keeps them do not change, but both runs share inputs.
 const isFor = (i, { role }) => i === 0 || ghostKind !== "kept" || role === "input";
 
 // Continues with the FMU whose bodies can be pulled, until the next start. It is slower than the FMU as shipped.

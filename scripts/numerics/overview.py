@@ -1,4 +1,4 @@
-"""Write the head of the report: ratios of other programs' run times to that of the FMU at equal error, as a plot and a table."""
+"""Write the head of the report, as a plot and a table: run times of other programs at equal error, as multiples of the FMU's."""
 
 import html
 import math

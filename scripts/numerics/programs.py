@@ -20,8 +20,8 @@ def timed(run):
     """
     Call run(); return the seconds and its result.
 
-    The time is processor time, or for short runs wall-clock time: when a virtual machine loses its processor, the processor clock is set back
-    by microseconds, and the minimum of many short times would be wrong.
+    The time is processor time, or for short runs wall-clock time. When a virtual machine loses its processor, the processor clock goes back by
+    microseconds. The minimum of many short times would then be wrong.
     """
     passed, of_processor = time.perf_counter(), time.process_time()
     result = run()

@@ -1,10 +1,10 @@
 """
 Compute time-optimal motions by direct collocation.
 
-The problem is min T subject to x' = f(x, u), x(0) = start, x(T) = end, and bounds on inputs and states. The inputs are constant in each interval, and
-the states polynomials that satisfy the equations at Radau points, which gives an order of 2 points - 1 at the intervals' ends (L. Biegler: Nonlinear
-programming, 2010, chapter 10). IPOPT solves the nonlinear program; CasADi gets f and its derivatives from the FMU. The co-simulation FMU with
-these inputs verifies the motion.
+The problem is min T subject to x' = f(x, u), x(0) = start, x(T) = end, and bounds on inputs and states. The inputs are constant in each interval. The
+states are polynomials that satisfy the equations at Radau points, of order 2 points - 1 at the intervals' ends (L. Biegler: Nonlinear programming,
+2010, chapter 10). IPOPT solves the nonlinear program; CasADi gets f and its derivatives from the FMU. The co-simulation FMU with these inputs
+verifies the motion.
 """
 
 from typing import NamedTuple

@@ -85,10 +85,10 @@ static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feel
 }
 
 /*
- * Returns the lanes in which a function stays positive, from its values f at the Chebyshev nodes; see search_judge() of
- * events/search.c. With the interpolant sum of c_k T_k and |T_k| <= 1, it is positive if c_0 exceeds the sum of the
- * other |c_k| and the tail, which bounds the interpolation error. It is also positive between nonnegative ends, if it
- * is monotone or concave by the same bound on a derivative.
+ * Returns the lanes in which a function stays positive, from its values f at the Chebyshev nodes; see
+ * search_judge() of events/search.c. The interpolant is the sum of c_k T_k with |T_k| <= 1. It is positive if c_0
+ * exceeds the sum of the other |c_k| and the tail, which bounds the interpolation error. It is also positive
+ * between nonnegative ends, if it is monotone or concave by the same bound on a derivative.
  */
 static Mask stay_positive(const Lanes *f) {
   Lanes c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES];

@@ -1,6 +1,6 @@
 /*
- * Vectors with a number for each of LANES runs, as wide as the processor's vectors. Operations on a lane never depend
- * on other lanes or on LANES, so that a run has the same results in any ensemble and on any processor.
+ * Vectors with a number for each of LANES runs, as wide as the processor's vectors. Operations on a lane never
+ * depend on other lanes or on LANES. So a run has the same results in any ensemble and on any processor.
  */
 #ifndef LANES_H
 #define LANES_H

@@ -1,7 +1,7 @@
 /*
- * Assembles a system in memory: encodes the functions as instruction tables, fills struct Lagrangian with metadata and
- * with the interpreter's functions, and sets the parts of the runtime that the linker selects in an FMU. Nothing is
- * freed, as a process has one system.
+ * Assembles a system in memory: encodes the functions as instruction tables, and fills struct Lagrangian with
+ * metadata and with the interpreter's functions. Sets the parts of the runtime that the linker selects in an FMU.
+ * Nothing is freed, as a process has one system.
  */
 #include "assembly.h"
 

@@ -1,5 +1,5 @@
 /*
- * Takes an FMU through its whole life cycle with valid and invalid calls, under sanitizers and valgrind, and repeats
+ * Takes an FMU through its whole life cycle with valid and invalid calls, under sanitizers and valgrind. Repeats
  * that after the library is unloaded and loaded again: drive LIBRARY GUID REALS STATES. Prints the log. Fails if a
  * valid call fails, a value is not finite, or memory leaks.
  */

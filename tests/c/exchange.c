@@ -1,8 +1,9 @@
 /*
- * Times model exchange with CVODE configured as in FMPy (BDF, difference quotients for the Jacobian matrix, steps of
- * at most a fiftieth of the time, roots of the event indicators), without Python: exchange LIBRARY GUID TOLERANCE END
- * STEPS REPEATS OUTPUTS POINTS COUNTS STATES INDICATORS [REFERENCE=VALUE ...]. Arguments and output are those of
- * stepping, with the numbers of states and indicators; STEPS is the number of calls of CVODE.
+ * Times model exchange with CVODE, without Python. CVODE is configured as in FMPy: BDF, difference quotients for
+ * the Jacobian matrix, steps up to a fiftieth of the time, and roots. Arguments and output are those of stepping,
+ * with the numbers of states and indicators. STEPS is the number of calls of CVODE:
+ *
+ *   exchange LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS STATES INDICATORS [REFERENCE=VALUE ...]
  */
 #include <cvode/cvode.h>
 #include <nvector/nvector_serial.h>

@@ -1,7 +1,7 @@
 /*
- * Integrates a generated system, which is linked in, by the solver's own steps, and prints each: start, end, then at a
- * third of the step and at its end whether the solver can interpolate the state, and the first state variable:
- * inside_steps END.
+ * Integrates a generated system, which is linked in, by the solver's own steps, and prints each: inside_steps END.
+ * A line has start and end of the step. For a third of the step and for its end, it has a flag (1: the solver can
+ * interpolate the state) and the first state variable.
  */
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /*
  * Compares the Jacobian matrix of a generated system, which is linked in, with directional derivatives of its right
- * side. Prints the states, the elements of the pattern, and the largest difference relative to the largest element,
- * over random points with coordinates and velocities between -1 and 1.
+ * side. Prints the number of states, that of elements of the pattern, and the largest difference relative to the
+ * largest element. Random points have coordinates and velocities between -1 and 1.
  */
 #include <math.h>
 #include <stdio.h>

@@ -12,7 +12,7 @@ struct Moment moment(void);
 
 /*
  * Returns the processor time since then, which other processes hardly affect; for times below 1 ms, the wall-clock
- * time. When a virtual machine is descheduled, its processor clock may go back by microseconds, and the shortest of
+ * time. When a virtual machine is descheduled, its processor clock may go back by microseconds. The shortest of
  * many short times would be such an outlier.
  */
 double seconds_since(struct Moment begin);

@@ -1,7 +1,7 @@
 /*
- * Lets each allocation of a simulation fail in turn, alone, and then with all that follow: out_of_memory LIBRARY GUID
- * OUTPUT, the value reference of an output. Fails if no message mentions memory, if memory leaks, or if the instance
- * does not simulate after a reset like a new one.
+ * Lets each allocation of a simulation fail in turn, alone, and then with all that follow: out_of_memory LIBRARY
+ * GUID OUTPUT. OUTPUT is the value reference of an output. Fails if no message mentions memory, if memory leaks, or
+ * if the instance does not simulate after a reset like a new one.
  */
 #include <stdbool.h>
 #include <stdio.h>

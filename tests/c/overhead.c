@@ -1,6 +1,6 @@
 /*
- * Measures the cost of the FMI layer: fmi2DoStep against the core called directly, for communication steps of 0.001 s,
- * and the number of allocations in them: overhead STEPS. Linked with the parts of one FMU.
+ * Measures the cost of the FMI layer: overhead STEPS. Compares fmi2DoStep with direct calls of the core for
+ * communication steps of 0.001 s, and counts allocations. Linked with the parts of one FMU.
  */
 #include <stdio.h>
 #include <stdlib.h>

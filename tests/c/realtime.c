@@ -1,8 +1,9 @@
 /*
- * Times the communication steps of an FMU one by one: realtime LIBRARY GUID RESOURCES STEP COUNT RUNS SECONDS. Takes
- * COUNT steps of STEP s in each of RUNS runs of at most SECONDS. Prints the number of steps; in ns the median, the
- * 99.9 % quantile and the maximum of the fastest time of each step in all runs, which excludes interruptions; the
- * maximum of all times; and the number of allocations. A call of getppid marks begin and end of the steps for strace.
+ * Times the communication steps of an FMU one by one: realtime LIBRARY GUID RESOURCES STEP COUNT RUNS SECONDS.
+ * Takes COUNT steps of STEP s in each of RUNS runs of at most SECONDS. Prints the number of steps, then times in
+ * ns, then the number of allocations. Of each step the fastest time in all runs is taken, which excludes
+ * interruptions: median, 99.9 % quantile and maximum. The last time is the maximum of all. A call of getppid marks
+ * begin and end of the steps for strace.
  */
 #define _GNU_SOURCE
 #include <stdio.h>

@@ -1,9 +1,10 @@
 /*
  * Times the steps of an FMU in processor time: stepping LIBRARY GUID TOLERANCE END STEPS REPEATS OUTPUTS POINTS COUNTS
- * [REFERENCE=VALUE ...] [REFERENCE~AMPLITUDE]. Prints a line with the Real variables OUTPUTS for each of up to POINTS
- * evenly spaced communication points, then the seconds of the fastest repeat, then a line with the Integer variables
- * COUNTS; both are comma-separated lists of references. An input with an amplitude changes before every step. Points
- * are printed in a run of their own: with 0 REPEATS that is the timed one, with 0 POINTS there is none.
+ * [REFERENCE=VALUE ...] [REFERENCE~AMPLITUDE]. Prints a line with the Real variables OUTPUTS for each of up to
+ * POINTS evenly spaced communication points. The seconds of the fastest repeat follow, then a line with the Integer
+ * variables COUNTS. Both are comma-separated lists of references. An input with an amplitude changes before every
+ * step. Points are printed in a run of their own: with 0 REPEATS that is the timed one, with 0 POINTS there is
+ * none.
  */
 #include <stdio.h>
 #include <stdlib.h>

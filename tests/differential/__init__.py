@@ -1,4 +1,4 @@
 """
-Differential test with random systems: the generator writes system.xml, SymPy derives the equations from the generator's own expressions,
-long doubles integrate them, and the FMU has to agree or to fail with a message.
+Differential test with random systems. The generator writes system.xml, SymPy derives the equations from the generator's own expressions, and long
+doubles integrate them. The FMU has to agree or to fail with a message.
 """

@@ -48,8 +48,8 @@ def integral(s, low, high, integrand):
 
 class Derivation:
     """
-    Equations of a system. mechanics: mass matrix and right side; results: outputs, positions and energies by name; arguments: the FMU's
-    names of the symbols of mechanics: time, coordinates, velocities, inputs, parameters, and modes that samples set.
+    Equations of a system. mechanics: mass matrix and right side. results: outputs, positions and energies by name. arguments: the FMU's names of the
+    symbols of mechanics, which are time, coordinates, velocities, inputs, parameters, and modes that samples set.
     """
 
     def __init__(self, system):

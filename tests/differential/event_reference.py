@@ -1,6 +1,6 @@
 """
-Motions with events in long doubles. events.c integrates up to a change. The state and modes after it follow here: impacts by Newton's law
-of restitution through M, friction by Coulomb's law, and the first combination of modes that a short trial motion confirms.
+Motions with events in long doubles. events.c integrates up to a change. The state and modes after it follow here. Impacts obey Newton's law of
+restitution through M, friction obeys Coulomb's law, and modes are the first combination that a short trial motion confirms.
 """
 
 import ctypes

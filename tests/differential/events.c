@@ -1,8 +1,8 @@
 /*
  * Motions with contacts, dry friction and events, in long doubles, up to the first change of a mode. The generated
- * source of a system defines the sizes N, SIZE (with the rows of constraints), CONTACTS, FRICTIONS, EVENTS, FIRST_MODE
- * (index of the first mode in the constants), HOLDERS (for each friction its contact, or -1) and parts(), and includes
- * reference.c before this file.
+ * source of a system includes reference.c before this file. It defines the sizes N, SIZE (with the rows of
+ * constraints), CONTACTS, FRICTIONS and EVENTS. It also defines FIRST_MODE (index of the first mode in the
+ * constants), HOLDERS (for each friction its contact, or -1) and parts().
  */
 enum {
   PER_CONTACT = 3 + N,  /* gap, its rate, its acceleration for a = 0; its gradient */

@@ -1,8 +1,8 @@
 /*
  * A reference integrator in long doubles: extrapolation of the modified midpoint rule (Hairer, Norsett, Wanner:
- * Solving Ordinary Differential Equations I, section II.9). Beside the usual error control, no step may change the
- * operand of a function by more than a fraction of the scale on which that function varies, so that no narrow feature
- * is stepped over.
+ * Solving Ordinary Differential Equations I, section II.9). Beside the usual error control, each step bounds the
+ * change of the operands of functions. The bound is a fraction of the scale on which the function varies. So no
+ * narrow feature is stepped over.
  */
 #include <math.h>
 #include <stdbool.h>

@@ -8,7 +8,7 @@ import csv
 import sys
 
 from faults import FAULTS
-from places import find
+from locations import find
 from plant import ROOT, TREE, build_all, copy_project, planted, succeeds
 
 TABLE = ROOT / "build" / "faults-by-room.csv"
@@ -69,4 +69,4 @@ def main(rooms, faults):
 
 
 if __name__ == "__main__":
-    main(sys.argv[1].split(","), [FAULTS[int(place)] for place in sys.argv[2:]] or FAULTS)
+    main(sys.argv[1].split(","), [FAULTS[int(index)] for index in sys.argv[2:]] or FAULTS)

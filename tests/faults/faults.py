@@ -1,9 +1,9 @@
 """
-Small faults, each with the cheapest test that detects it: (the right text, which is unique in the sources, the wrong text, the test), and
-the name of the function if the text is in several.
+Small faults, each with the cheapest test that detects it: (right text, wrong text, test). The right text is unique in the sources, or within the
+function that a fourth item names.
 """
 
-from places import Fault
+from locations import Fault
 
 PENDULUM = "SimplePendulum and not Linear"
 
@@ -25,7 +25,7 @@ def broken(words):
 
 by_hand = "test_description_by_hand"
 
-PLACES = [
+PLANS = [
     # The compiler: algebra
     ("if (arity == 2) add(cone, vertex->right);", "", ctest("test_differentiate")),
     ("bool is_even = fmod(exponent, 2.0) == 0.0;", "bool is_even = true;", ctest("test_simplify")),
@@ -94,12 +94,12 @@ PLACES = [
     ("energy = subtract(graph, energy, multiply(graph, slopes.values[i], slopes.symbols[i]));", "(void)graph;",
      ctest("test_equations")),
     ("fmin(left.lowest, right.lowest)", "fmax(left.lowest, right.lowest)", pytest("test_energies", "kinetic_terms")),
-    ("*driven = degrees.highest == 2 && degrees.lowest < 2;", "*driven = degrees.lowest < 2;",
+    ("*is_prescribed = degrees.highest == 2 && degrees.lowest < 2;", "*is_prescribed = degrees.lowest < 2;",
      pytest("test_energies", "names_the_law")),
     ("body->mass.node : body->inertia.node, position", "body->mass.node : ZERO, position", ctest("test_equations")),
     ("equations->potential = stored_energy(model, model->energies.potential.node);",
      "equations->potential = model->potential.node;", ctest("test_equations")),
-    ("add(graph, power, model->forces.driven_power.node);", "power;",
+    ("add(graph, power, model->forces.prescribed_power.node);", "power;",
      pytest("test_energies", "power_of_forces")),
     ("change_of(expansion, slopes.values[i], 0.5)", "change_of(expansion, slopes.values[i], 1.0)",
      ctest("test_equations")),
@@ -271,7 +271,7 @@ PLACES = [
     # Constraints
     ("*sum = add(graph, *sum, constraint_force_along(graph, free_ones, k, model->unknowns.forces));", "(void)sum;",
      pytest("test_constraints", "directional", "FourBar")),
-    ("*sum = add(graph, *sum, constraint_force_along(graph, driven, k, model->unknowns.forces));", "(void)sum;",
+    ("*sum = add(graph, *sum, constraint_force_along(graph, prescribed, k, model->unknowns.forces));", "(void)sum;",
      pytest("test_constraints", "driven_mechanism", "FourBar")),
     ("negate(graph, constraints->acceleration_rest[j]);", "constraints->acceleration_rest[j];",
      pytest("test_constraints", "accelerations_and_forces and KnifeEdge", "KnifeEdge")),
@@ -462,4 +462,4 @@ EQUIVALENT = [
      "the cubic that both intervals share is the parabola that the first row asks for"),
 ]
 
-FAULTS = [Fault(*place) for place in PLACES]
+FAULTS = [Fault(*plan) for plan in PLANS]

@@ -1,6 +1,6 @@
 """
-Plant each fault of faults.py in a copy of the project, build the targets of its test, and run that test: scripts/faults [INDEX IN THE LIST
-...]. Fails if a fault is not detected, or if these tests fail without a fault.
+Plant each fault of faults.py in a copy of the project: scripts/faults [INDEX IN THE LIST ...]. Build the targets of its test, and run that test.
+Fails if a fault is not detected, or if these tests fail without a fault.
 """
 
 import os
@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from faults import FAULTS
-from places import find
+from locations import find
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 TREE = ROOT / "build" / "faults"
@@ -63,10 +63,10 @@ def run(kind, test, keyword="", *_):
 @contextmanager
 def planted(fault):
     """Plant the fault in the copy within the context."""
-    place = find(fault)
-    path = TREE / place.file
+    location = find(fault)
+    path = TREE / location.file
     text = path.read_text()
-    path.write_text(text[: place.start] + fault.wrong + text[place.end :])
+    path.write_text(text[: location.start] + fault.wrong + text[location.end :])
     try:
         yield
     finally:
@@ -99,7 +99,7 @@ def check_without_faults(tests):
 
 def main():
     started = time.monotonic()
-    chosen = [FAULTS[int(place)] for place in sys.argv[1:]] or FAULTS
+    chosen = [FAULTS[int(index)] for index in sys.argv[1:]] or FAULTS
     copy_project()
     check_without_faults([fault.test for fault in chosen])
     unseen = 0

@@ -1,7 +1,7 @@
 """
-Random sequences of valid and invalid FMI calls on every FMU: random_calls.py NUMBER [SEED]. Prints the number of calls; equal seeds give
-equal calls, by default those of the tests. A model of the life cycle runs beside the FMU: a call that the standard's table forbids must
-return an error, values must be finite, and all allocated memory must be freed.
+Random sequences of valid and invalid FMI calls on every FMU: random_calls.py NUMBER [SEED]. Prints the number of calls; equal seeds give equal calls,
+by default those of the tests. A model of the life cycle runs beside the FMU. A call that the standard's table forbids must return an error, values
+must be finite, and all allocated memory must be freed.
 """
 
 import ctypes

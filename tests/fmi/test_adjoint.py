@@ -49,8 +49,8 @@ def model(name):
 @pytest.mark.parametrize("name", ["Mixed", *CONSTRAINED])
 def test_adjoint_derivatives_are_transposed_directional_ones(name):
     """
-    Adjoint derivatives of a sum of all unknowns agree with directional ones for each known: for small blocks of M, a block factored at run time, a closed loop,
-    and a tree of joints.
+    Adjoint derivatives of a sum of all unknowns agree with directional ones for each known. Systems have small blocks of M, a block factored at run
+    time, a closed loop, and a tree of joints.
     """
     instance, unknowns, knowns = model(name)
     across = np.random.default_rng(1).standard_normal(len(unknowns))

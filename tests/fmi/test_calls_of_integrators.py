@@ -105,7 +105,7 @@ def test_times_past_the_stop_time(kind):
 
 
 def test_a_due_event_cannot_be_skipped(open_fmu):
-    """Event mode cannot end without an update of the discrete states if an event is due; if none is, as some importers do at the start, it can."""
+    """Event mode cannot end without an update of the discrete states if an event is due. If none is due, it can, as some importers do at the start."""
     missing = "an event is due; expected an update of the discrete states before it"
     servo = open_fmu("DigitalServo", kind=FMU2Model).initialize()  # its first sample is due
     state = servo.fmu.getFMUstate()
@@ -212,7 +212,10 @@ def test_few_events_beside_a_redundant_constraint(tolerance):
 
 @pytest.mark.parametrize("distance", [1e-7, 1e-5, 1e-3])
 def test_accelerations_near_redundant_constraints(distance, open_fmu):
-    """Near the constraints the accelerations of Bricard's loop are those on them, up to the distance, also of GetReal; velocities are those that were set."""
+    """
+    Near the constraints the accelerations of Bricard's loop are those on them, up to the distance, also of GetReal; velocities are those that were
+    set.
+    """
     loop = open_fmu("Bricard", kind=FMU2Model).initialize()
     names = [unknown.variable.name for unknown in loop.description.derivatives]
     states = np.array(loop.get(*(unknown.variable.derivative.name for unknown in loop.description.derivatives)))
@@ -240,8 +243,7 @@ def test_few_events_without_a_tolerance(name, rows, monkeypatch):
 
 def test_drift_is_within_the_tolerance_of_the_steps():
     """
-    The drift of a pendulum released from the level of its pivot stays within the tolerance times the steps, against the period by the
-    elliptic integral.
+    The drift of a pendulum released from the level of its pivot stays within the tolerance times the steps. The elliptic integral gives its period.
     """
     from scipy.special import ellipk
 

@@ -14,7 +14,7 @@ SIDE = 160  # of the drawing, in SVG units; the PNG has 128 pixels
 
 
 def shapes(name, element, look):
-    """Points of all circles, lines or polygons of a class, as rows of x and y in the drawing; name: of a system, or the path of its icon."""
+    """Points of all circles, lines or polygons of a class, as rows of x and y in the drawing. `name` is that of a system, or the path of its icon."""
     path = fmi3.unpacked(name) / "terminalsAndIcons" / "icon.svg" if isinstance(name, str) else name
     svg = etree.parse(path).getroot()
     found = [shape for shape in svg if etree.QName(shape).localname == element and shape.get("class") == look]

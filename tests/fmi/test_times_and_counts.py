@@ -84,8 +84,8 @@ def test_counts_change_in_event_mode_alone(early):
 
 def test_events_without_early_return():
     """
-    An importer that uses event mode without early return sees an event at the end of its step (FMI 3.0.2, section 4.2.1): the ball, released at
-    1 m, hits the ground at sqrt(2/g) = 0.4515 s. Event mode then has nothing more to do.
+    An importer that uses event mode without early return sees an event at the end of its step (FMI 3.0.2, section 4.2.1). The ball, released at 1 m,
+    hits the ground at sqrt(2/g) = 0.4515 s. Event mode then has nothing more to do.
     """
     ball = fmi3.Instance("BouncingBall", eventModeUsed=True, earlyReturnAllowed=False).initialize({"h": 1.0, "v": 0.0})
     assert ball.get("g") == 9.81

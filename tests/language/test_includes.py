@@ -227,7 +227,7 @@ def test_mistakes_in_a_part(inside, message, tmp_path):
     ('<parameter name="mass" value="1" start="2"/>', "a <parameter> has a value and a start"),
     ('<parameter name="mass" value="lost"/>', "system.xml:3: value of <parameter>: unknown name 'lost'"),
     ('<parameter name="mass" value="part.x"/>', "system.xml:3: value of <parameter> cannot depend on coordinates, but 'part.x' does"),
-    ('<parameter name="mass" start="2"/><parameter name="mass" start="2"/>', "'mass' is given twice; expected once"),
+    ('<parameter name="mass" start="2"/><parameter name="mass" start="2"/>', "the <include> overrides 'mass' twice; expected once"),
     ('<parameter name="mass" start="-2"/>', "'part.mass': start -2 is outside min and max"),
     ('<parameter name="mass" unit="kg"/>', "<parameter> has no attribute 'unit'; expected name, start, value, min or max"),
     ('<input name="F" value="part.mass"/>', "system.xml:3: unit mismatch: the value of the input has the unit kg, expected kg.m/s2"),

@@ -81,8 +81,7 @@ def test_messages(tmp_path, constant, message):
 ])  # fmt: skip
 def test_units_of_modes_and_functions(tmp_path, content, message):
     """
-    A mode without a unit is a pure number; a number as an argument takes the unit of the quantity it is added to or compared with, a
-    function of it does not.
+    A mode without a unit is a pure number. A number as an argument takes the unit of the quantity it is added to or compared with; a function of it does not.
     """
     text = f'<system name="X"><parameter name="k" start="2" unit="N/m"/><parameter name="m" start="1" unit="kg"/><coordinate name="x" velocity="v" unit="m"/><particle mass="m" x="x"/>{content}</system>'
     result = compiled(tmp_path, text)

@@ -62,7 +62,7 @@ PUSHED = """
 """
 FORCES = {"If": "if(x &lt; 0, 1, -1)", "Sign": "-sign(x)", "Curve": "steps(x)"}
 
-# A mass hangs by a rod from a bead on a rail with a step: the rod is consistent until the bead is moved onto the step.
+# A mass hangs by a rod from a bead on a rail with a step. The rod is consistent until the bead is moved onto the step.
 HUNG = """
 <system name="Hung">
   <coordinate name="x" velocity="v" start="-0.5" velocityStart="1"/>

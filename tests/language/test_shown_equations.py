@@ -197,8 +197,8 @@ class Shown:
 
 def equations_of(shown):
     """
-    Yield (label, left, right) of what is shown and has a value in the FMU: motion, rates, outputs, accelerations, and energies; but not a U
-    with velocities, which is not potentialEnergy.
+    Yield (label, left, right) of the shown equations that have a value in the FMU: motion, rates, outputs, accelerations, and energies. A U with
+    velocities is left out, as it is not potentialEnergy.
     """
     has_velocities = any("v dU/dv" in getattr(entry, "text", "") for entry in shown.sections.get("Energies", []))
     energies = {"K": "kineticEnergy"} | ({} if has_velocities else {"U": "potentialEnergy"})

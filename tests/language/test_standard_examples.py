@@ -1,6 +1,6 @@
 """
-Standard examples of others, written as a new user would: Modelica's ElastoGap, ControlledTemperature, three tanks and a cascaded servo, a FIR
-filter, PyDy's chaos pendulum and pendula on a cart, exudyn's bungee jump, and others. Closed forms and SciPy have the motions.
+Standard examples of others, written as a new user would. They include Modelica's ElastoGap, ControlledTemperature, three tanks and a cascaded servo,
+and a FIR filter. PyDy's chaos pendulum and pendula on a cart, and exudyn's bungee jump are others. Closed forms and SciPy have the motions.
 """
 
 import re

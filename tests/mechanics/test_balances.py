@@ -81,8 +81,8 @@ def test_power_of_the_force_on_the_cart(open_fmu):
 
 def test_the_lost_term(open_fmu):
     """
-    A common error in derivations of this system drops m l x' theta' sin(theta) from dL/dtheta, so that the same term of d/dt dL/domega
-    remains in the equation of theta. The wrong equation does not conserve energy; the FMU does.
+    A common error in derivations of this system drops m l x' theta' sin(theta) from dL/dtheta. The same term of d/dt dL/domega then remains in the
+    equation of theta. The wrong equation does not conserve energy; the FMU does.
     """
     M, m, l, g = 1.0, 0.3, 0.5, 9.81
     start = [0.0, 0.4, 1.0, 0.0]

@@ -119,7 +119,7 @@ def test_motion(name, open_fmu):
         assert instance.get("o") == pytest.approx(1.5 * np.cos(th) * w - th * z + 0.3, rel=1e-8)
 
 
-# Systems with <work/>, and their total power by hand: of motors that carry a spring's end or a pivot or draw in a rope, and of mass that leaves.
+# Systems with <work/>, and their total power by hand. Motors carry a spring's end or a pivot, or draw in a rope; or mass leaves.
 WORKED = {
     "Carried": (carried, "q v z", lambda t, s: -3 * s[0] * (-s[2] + np.sin(t))),
     "Pivot": (pivot, "th w z", lambda t, s: 2 * (1.5 * (np.cos(s[0]) * pivot(t, s)[1] - np.sin(s[0]) * s[1] ** 2) - s[1] * s[2] - s[0] * pivot(t, s)[2]) * pivot(t, s)[2]),

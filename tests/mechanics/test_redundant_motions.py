@@ -183,7 +183,7 @@ def product(a, b):
 
 
 def bricard(q, v, a):
-    """Time series of points, six of a sixth of the mass for each rod, and of the last rod's end and axes; rods are (axis, direction)."""
+    """Time series of points, six of a sixth of the mass for each rod, and of the last rod's end and axes. Rods are (axis, direction)."""
     l, w = 1.0, 0.1
     frame, origin, points = np.tile(np.eye(3), (1, len(q), 1, 1)), np.zeros((3, len(q), 3)), []
     frame = np.concatenate([frame, np.zeros((2, len(q), 3, 3))])

@@ -20,7 +20,10 @@ SITE = ROOT / "build" / "gallery"
 
 
 def broken_links():
-    """Yield the links between pages whose file or anchor does not exist; 404.html is for a server, and the fragments of the laboratory's address name systems."""
+    """
+    Yield the links between pages whose file or anchor does not exist. Excluded are 404.html, which is for a server, and fragments of the
+    laboratory's address, which name systems.
+    """
     pages = {page: page.read_text(encoding="utf-8") for page in SITE.rglob("*.html") if page.name not in ("404.html", "laboratory.html") and "systems" not in page.parts}
     for page, text in pages.items():
         for link in re.findall(r'(?:href|src)="([^"]+)"', text):

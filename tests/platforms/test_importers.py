@@ -1,10 +1,12 @@
 """
 Every FMU in other importers, against FMPy's co-simulation.
 
-Also tried, but not usable here: OMSimulator (its Python package downloads the program while it is installed, from a server other than the
-package registry: "Failed building wheel for OMSimulator"), PyFMI (on the registry for Python 2 only, built against an FMI Library that
-Debian does not package: "Getting requirements to build wheel did not run successfully"), FMI++ (builds against Boost and SWIG: "Failed
-building wheel for fmipp"), CoFMUpy (runs FMUs through FMPy, so that it would test nothing more).
+Other importers that were tried are not usable here:
+
+- OMSimulator: its Python package downloads the program during installation, from another server: "Failed building wheel for OMSimulator".
+- PyFMI: the package is for Python 2 only. It is built against an FMI Library that Debian does not package: "Getting requirements to build wheel did not run successfully".
+- FMI++: it builds against Boost and SWIG: "Failed building wheel for fmipp".
+- CoFMUpy: it runs FMUs through FMPy, so that it would test nothing more.
 """
 
 import os
@@ -79,8 +81,8 @@ def test_table(capfd, monkeypatch):
 
 def test_cost_of_constraints():
     """
-    At most 10 events a second, three times the evaluations of the pendulum in minimal coordinates (AndrewsSqueezer: of 1000 s a second), and
-    ten times the error of the same motion in minimal coordinates.
+    Bounds: 10 events a second, and ten times the error of the same motion in minimal coordinates. Evaluations are at most three times those of the
+    pendulum in minimal coordinates (AndrewsSqueezer: of 1000 s a second).
     """
     rows = {name: (float(end), int(evaluations), int(events), quotient) for name, end, evaluations, events, _, _, _, quotient in
             (line.strip("| ").split(" | ") for line in constrained.table(BUILD / "fmu")[2:])}  # fmt: skip

@@ -63,9 +63,9 @@ def run_in_page(page, until):
 @pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in DAILY else pytest.mark.release) for name in fmu.moving_names()])
 def test_the_page_is_the_fmu(browser, page_file, name):
     """
-    The states after 10 s, or before the bars lie flat, where they could fold, are those of the native FMU. C libraries may differ in the
-    last place of a sine: in a chaotic system each step amplifies that at most as it amplifies rounding of the start values; a method whose
-    steps depend on it differs by a fraction of the tolerance. The scene is not empty.
+    The states after 10 s, or before the bars lie flat, where they could fold, are those of the native FMU. C libraries may differ in the last place
+    of a sine. In a chaotic system each step amplifies that at most as it amplifies rounding of the start values. A method whose steps depend on it
+    differs by a fraction of the tolerance. The scene is not empty.
     """
     end = 0.7 if name == "NFourBar" else 10.0
     expected, *nudged = (run_natively(name, end, factor)[0] for factor in (1.0, 1.0 - 2.0**-52, 1.0 + 2.0**-52))
@@ -232,8 +232,8 @@ def test_pulling_a_particle(browser, page_file):
 
 def test_pulling_a_point_of_a_body(browser, page_file):
     """
-    A linkage pulled beside the middle of its coupler rests where no admissible motion changes the energy of weights and spring; the motion
-    follows from the loop's equations by hand.
+    A linkage pulled beside the middle of its coupler rests where no admissible motion changes the energy of weights and spring. The motion follows
+    from the loop's equations by hand.
     """
     with opened(browser, page_file("FourBar")) as page:
         phi = page.evaluate(f"{LAST}[live.names.indexOf('phi')]")

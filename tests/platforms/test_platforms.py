@@ -1,6 +1,6 @@
 """
-FMUs for several platforms in one archive: libraries for Windows run under wine, those for ARM under qemu-user; those for macOS, which
-cannot run here, are inspected. FMU_PLATFORM_SYSTEMS=all takes all systems instead of one per solver.
+FMUs for several platforms in one archive. Libraries for Windows run under wine, those for ARM under qemu-user. Those for macOS, which cannot run
+here, are inspected. FMU_PLATFORM_SYSTEMS=all takes all systems instead of one per solver.
 """
 
 import functools

@@ -100,8 +100,8 @@ def test_a_pendulum(browser, tmp_path):
 @pytest.mark.parametrize("version", [2, 3])
 def test_frames(browser, arm, tmp_path, version):
     """
-    An arm that rotates about the upward y axis, a block that slides along it, and a load above it, in a frame whose z points down; for both
-    versions of FMI.
+    An arm that rotates about the upward y axis, a block that slides along it, and a load above it, in a frame whose z points down. Both versions of
+    FMI are tested.
     """
     path = fmu.BUILD / "animation" / ("fmu" if version == 2 else "fmi3") / "SceneArm.fmu"
     written = write_results(simulate(path, {"l": 0.7}), tmp_path)
@@ -143,8 +143,8 @@ def test_formulas(browser, arm, tmp_path):
 
 def test_drawn_lines(browser, tmp_path):
     """
-    Ends of lines follow coordinates, parameters, inputs and time, as recorded: the pivot on its circle, the hinge of the rocker, the cart's
-    wheel, and the arrow of the force on the cart.
+    Ends of lines follow coordinates, parameters, inputs and time, as recorded. The lines are the pivot on its circle, the hinge of the rocker, the
+    cart's wheel, and the arrow of the force on the cart.
     """
     ends = "k => live.scene.lines.map((line) => line.at(live.history.samples[k][0], live.history.time(k)).map((end) => end.toArray()))"
     for name, start in (("RotatingPivotPendulum", {"r": 0.3, "w": 5.0}), ("FourBar", {"c": 0.7}), ("InvertedPendulumCart", {"F": 2.0})):
@@ -177,8 +177,8 @@ def page_of_run(folder, name, start=None, **options):
 
 def test_the_view_follows(browser, tmp_path):
     """
-    The plate slides across the plane by many times its own length, and stays at the height of the view's middle; with "Follow" off it leaves the view. The four-bar
-    linkage stays where it is, and so does its view.
+    The plate slides across the plane by many times its own length, and stays at the height of the view's middle. With "Follow" off it leaves the
+    view. The four-bar linkage stays where it is, and so does its view.
     """
     where = "() => { const { scene } = live, [x, y] = scene.pixels(scene.objects[0].position.setFromMatrixPosition(scene.objects[0].matrix)); return [x / scene.container.clientWidth, y / scene.container.clientHeight]; }"  # fmt: skip
     _, file = page_of_run(tmp_path, "KnifeEdge")

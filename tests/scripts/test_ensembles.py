@@ -1,6 +1,5 @@
 """
-Many runs at once (src/ensemble) agree with single runs of the FMU, whatever the other runs and the processor; unsupported runs are left to
-the FMU.
+Many runs at once (src/ensemble) agree with single runs of the FMU, whatever the other runs and the processor. Unsupported runs are left to the FMU.
 """
 
 import ctypes

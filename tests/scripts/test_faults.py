@@ -8,7 +8,7 @@ from fmu import ROOT
 
 sys.path.append(str(ROOT / "tests" / "faults"))
 from faults import FAULTS
-from places import Fault, find
+from locations import Fault, find
 
 
 def test_faults_can_be_planted():
@@ -30,6 +30,6 @@ def test_faults_can_be_planted():
 @pytest.mark.parametrize("text, function, message", [("no such words", None, "stands 0 times, in no file"),
                                                      ("return true;", None, "stands [0-9]+ times, in modelDescription"),
                                                      ("evaluate_prepare(instance);", "log_error", "stands 0 times")])  # fmt: skip
-def test_ambiguous_places_are_errors(text, function, message):
+def test_ambiguous_locations_are_errors(text, function, message):
     with pytest.raises(LookupError, match=message):
         find(Fault(text, "", ("ctest", "test_graph"), function))

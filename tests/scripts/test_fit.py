@@ -132,8 +132,7 @@ def test_events_at_once(lagrange_fmu):
 
 def test_derivatives_at_events(lagrange_fmu):
     """
-    A ball that starts on the ground, below which no start is valid; a time equal to that of an impact; and a time at which changed values
-    behave differently.
+    A ball starts on the ground, below which no start is valid. A time is that of an impact; another is one at which changed values give another kind of motion.
     """
     ball, values = fmu.archive("Ball"), {"h": 0.0, "v": 1.0}
     found = lagrange_fmu.sensitivities(ball, ["h"], ["h", "e"], [0.3], values)

@@ -43,8 +43,7 @@ def test_energy_at_the_start(problem, open_fmu):
 @pytest.mark.parametrize("problem", PROBLEMS, ids=lambda problem: problem.system)
 def test_links_move_with_their_joints(problem):
     """
-    At the start both sides of a hinge or ball joint have the same velocity, and the relative rotation of hinges and sliders is about the
-    axis at most.
+    At the start both sides of a hinge or ball joint have the same velocity. The relative rotation of hinges and sliders is about the axis at most.
     """
     links = problem.model.links
     at = lambda link, point: np.add(link.velocity, np.cross(link.angular_velocity, np.subtract(point, link.centre)))
@@ -110,8 +109,8 @@ def test_row_of_accelerations():
 
 def test_accelerations_without_pinocchio(monkeypatch, tmp_path):
     """
-    The report has a sentence if the package, the compiler or a header is missing, in the folders of all Debian releases, and in a quick
-    report that would have to compile the program.
+    The report has a sentence if the package, the compiler or a header is missing in the folders of all Debian releases. So has a quick report that
+    would have to compile the program.
     """
     monkeypatch.setattr(accelerations, "FOLDER", tmp_path)
     monkeypatch.setattr(accelerations, "HEADERS", [("here.h", [tmp_path / "elsewhere", tmp_path], "libeigen3-dev")] * 2)

@@ -169,7 +169,7 @@ def test_a_constant_output(lagrange_fmu):  # noqa: F811
 
 def test_through_handovers(lagrange_fmu):  # noqa: F811
     """
-    The motion becomes stiff and nonstiff again, so that auto changes from Taylor series to Radau's method and back; against SciPy on
+    The motion becomes stiff and nonstiff again, so that auto changes from Taylor series to Radau's method and back. SciPy gives the reference from
     equations written by hand.
     """
     from lagrange_fmu.model_exchange import opened

@@ -22,15 +22,31 @@ def test_comments_of_python():
 
 @pytest.mark.parametrize("page, expected", [
     ("It is short. It is fine.", []),
-    (" ".join(["It is a sentence."] * 7), ["a paragraph of 7 sentences"]),
+    (" ".join(["It is a sentence."] * 5), ["a paragraph of 5 sentences"]),
+    (" ".join(["It is a sentence."] * 4), []),
     ("\n\n".join(["It is a sentence."] * 7), []),
     ("\n".join(["- It is an item of a list."] * 7), []),
     ("```\n" + " ".join(["It is code."] * 7) + "\n```", []),
-    ("word " * 46 + "word.", ["a sentence of 47 words"]),
+    ("word " * 25 + "word.", ["a sentence of 26 words"]),
+    ("word " * 24 + "word.", []),
+    ("- " + "word " * 13 + "\n  " + "word " * 13 + "\n- word.", ["a sentence of 26 words"]),
+    ("word " * 23 + "is `a*b + c*d + e*f` = 3.5, F(t) = 2 + 3 x:", []),
     ("| it is told |", ["'is told'"]),
 ])  # fmt: skip
 def test_pages(page, expected):
     assert [what for _, what, _ in words.faults_of_page(page)] == expected
+
+
+@pytest.mark.parametrize("comment, lines", [
+    ("/* " + "word " * 26 + "*/", [0]),
+    ("/*\n * Short. " + "word " * 13 + "\n * " + "word " * 13 + "\n */", [1]),
+    ("/*\n * " + "word " * 13 + "\n *   " + "word " * 13 + "\n */", []),
+    ('"""\n    Short.\n\n    ' + "word " * 13 + "\n    " + "word " * 13 + '\n    """', [3]),
+    ("# " + "word " * 25, []),
+])  # fmt: skip
+def test_sentences_of_comments(comment, lines):
+    """Lines that are indented further, such as formulas, are not parts of sentences."""
+    assert [number for number, _, _ in words.long_sentences(words.paragraphs_of_comment(comment))] == lines
 
 
 def test_names():

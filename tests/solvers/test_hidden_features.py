@@ -1,6 +1,6 @@
 """
-Features of the right side that a series about the start of a step cannot show: walls, hills, steps, pulses, powers that vanish at the
-start, and kinks of all kinds. Expected values come from the energy integral or a closed form.
+Features of the right side that a series about the start of a step cannot show. They are walls, hills, steps, pulses, powers that vanish at the start,
+and kinks of all kinds. Expected values come from the energy integral or a closed form.
 """
 
 import mpmath as mp

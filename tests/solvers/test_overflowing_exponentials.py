@@ -1,6 +1,6 @@
 """
-Quotients and logarithms of exponentials, such as 1/(1 + exp(-x/d)), whose exp overflows beyond 709 d: each drives a body of its own
-through the origin, and NumPy's functions that do not overflow have the same motion.
+Quotients and logarithms of exponentials, such as 1/(1 + exp(-x/d)), whose exp overflows beyond 709 d. Each drives a body of its own through the
+origin; functions of NumPy that do not overflow give the same motion.
 """
 
 import fmpy

@@ -56,7 +56,7 @@ CASES = [
     ("unknown parent", 13, elbow('<parent link="uper"/><child link="lower"/>'), 12,
      "there is no link 'uper' for the parent of the joint 'elbow'; did you mean 'upper'"),
     ("unknown child", 13, elbow('<parent link="upper"/><child link="hand"/>'), 12,
-     "there is no link 'hand' for the child of the joint 'elbow'; expected one of the file"),
+     "there is no link 'hand' for the child of the joint 'elbow'; expected an existing name"),
     ("two parents", 13, elbow('<parent link="lower"/><child link="upper"/>'), 12,
      "the link 'upper' is the child of the joint 'elbow' and of 'shoulder' on line 9; expected a tree"),
     ("loop", 10, '<parent link="lower"/><child link="upper"/><axis xyz="0 1 0"/>', 9, "the link 'upper' or a parent of it is its own ancestor"),

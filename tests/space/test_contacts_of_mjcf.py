@@ -84,7 +84,7 @@ STANDS = "nothing stands on the geom 'floor'; expected ground=\"true\" in an <in
 STATIC = "the geom 'wall' of the world does not touch the geom 'ga' of the body 'a', and 2 other such pairs, unlike in MuJoCo"
 BODIES = "the geom 'ga' of the body 'a' does not touch the geom on line 6 of the body 'c', unlike in MuJoCo"
 SPINS = "the torsional friction of condim=\"4\" is not read, and may change the motion; expected condim=\"3\""
-DISABLED = "nothing touches the ground: contact=\"disable\" of <flag>; expected a file without it"
+DISABLED = "nothing touches the ground: contact=\"disable\" of <flag>; remove it"
 
 
 @pytest.mark.parametrize(

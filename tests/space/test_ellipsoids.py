@@ -199,8 +199,8 @@ gap.terminal, gap.direction = True, -1
 
 def test_an_egg_that_lands_without_a_bounce_and_lifts_off_again():
     """
-    Rotation lifts the egg off a smooth table at once. At a loose tolerance the norm of the quaternion has an error; its correction at the
-    impact moves the gap by more than rounding, to either side of 0.
+    Rotation lifts the egg off a smooth table at once. At a loose tolerance the norm of the quaternion has an error. Its correction at the impact
+    moves the gap by more than rounding, to either side of 0.
     """
     random = np.random.default_rng(9)
     for _ in range(25):

@@ -1,6 +1,6 @@
 """
-<joint>: a free body with a quaternion is attached to the base by each type. Its motion satisfies Newton's and Euler's laws with the forces
-and torques of the joint, along the axes of the frame on the base, and the constraints of the type.
+<joint>: a free body with a quaternion is attached to the base by each type. Its motion satisfies Newton's and Euler's laws with the forces and
+torques of the joint, along the axes of the frame on the base. It also satisfies the constraints of the type.
 """
 
 import re

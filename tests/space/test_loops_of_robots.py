@@ -41,7 +41,7 @@ def fixed(name, parent, place, yaw=0.0):
     return link(name) + joint(f"{name}_mount", "fixed", parent, name, place, yaw=yaw)
 
 
-# Two fingers, each on a crank and a rocker of the same length, on an inclined palm: the hinges' axes are the y axes of the links.
+# Two fingers, each on a crank and a rocker of the same length, on an inclined palm. The hinges' axes are the y axes of the links.
 def finger(side, sign):
     crank = link(f"{side}_crank_link", 0.05, "0 0.003 0.03", INERTIA.format(2e-5, 3e-5, 1e-5))
     rocker = link(f"{side}_rocker_link", 0.04, "0.001 0 0.03", INERTIA.format(2e-5, 2e-5, 1e-5))
@@ -80,7 +80,7 @@ def delta():
     return f'<robot name="delta">{"".join(text)}{rotations("wrist", "rod0a_end", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", (-x, -y, 0))}</robot>'
 
 
-# Stewart's platform: six legs, each a cylinder with a piston, from the floor to a platform, which in the file is attached to the first leg.
+# Stewart's platform: six legs, each a cylinder with a piston, from the floor to a platform. In the file the platform is attached to the first leg.
 LEGS = range(6)
 FLOOR = [np.array([0.5 * np.cos(a), 0.5 * np.sin(a), 0.0]) for a in np.radians([10, 110, 130, 230, 250, 350])]
 CEILING = [np.array([0.3 * np.cos(a), 0.3 * np.sin(a), -0.02]) for a in np.radians([50, 70, 170, 190, 290, 310])]
@@ -95,8 +95,8 @@ def stewart():
     return f'<robot name="stewart">{"".join(text)}{rotations("neck", "piston0", "knot", "xyz")}{link("knot")}{joint("hold", "fixed", "knot", "plate", -CEILING[0])}</robot>'
 
 
-# Two legs of a running robot: a stiff leaf spring in the shin and one at the heel, which a rod connects with the thigh, and a crank that
-# moves the foot by another rod. The rods are massless distance constraints.
+# Two legs of a running robot. Each has a stiff leaf spring in the shin and one at the heel, which a rod connects with the thigh. A crank moves the
+# foot by another rod. The rods are massless distance constraints.
 BONES = {  # of each joint: its parent, its position there, its axis, mass and centre of its link
     "roll": (None, (0.02, 0.135, 0), "1 0 0", 1.8, "-0.02 0 -0.04"),
     "yaw": ("roll", (0, 0, -0.07), "0 0 1", 1.2, "0 0 -0.03"),

@@ -144,8 +144,8 @@ def test_hulls(library):
 
 def test_hulls_of_planes(library):
     """
-    However many points lie on faces and edges, the hull vertices are the corners of the cube, also of a rotated one, and of one whose faces
-    bulge by half the tolerance.
+    However many points lie on faces and edges, the hull vertices are the corners of the cube. This also holds for a rotated cube, and for one whose
+    faces bulge by half the tolerance.
     """
     points = grid_on_cube(12)
     bulging = points * (1 + 5e-6 * np.prod(1 - np.sort(np.abs(2 * points))[:, :2] ** 2, axis=1, keepdims=True))

@@ -205,8 +205,8 @@ def test_box_on_a_slope(stick, height):
 @pytest.mark.parametrize("slope, mu, speed", [(0.3, 0.32, 0), (0.3, 0.5, 0), (0.3, 2, 0), (0.2, 0.25, 0), (0.2, 0.32, 0.5), (-0.2, 0.32, -0.5)])
 def test_box_in_a_plane_on_a_slope(slope, mu, speed):
     """
-    It stands, or comes to rest, if tan(slope) < mu and tan(slope) < width/height, although half of the friction exceeds the limit of the
-    corner with less load.
+    It stands, or comes to rest, if tan(slope) < mu and tan(slope) < width/height. Half of the friction nevertheless exceeds the limit of the corner
+    with less load.
     """
     m, width, height = 2.0, 0.2, 0.6
     with Running("BoxInPlane", {"slope": slope, "mu": mu, "A": width, "C": height, "z": height / 2, "vx": speed}) as instance:
@@ -279,8 +279,7 @@ def test_rocking_block():
 
 def test_ball_rolls_off_a_ball():
     """
-    Rolling without slipping it leaves a fixed ball at cos = 10/17 of that at the start, in any direction: the axes of the friction do not
-    matter.
+    Rolling without slipping it leaves a fixed ball at cos = 10/17 of that at the start. The direction is arbitrary: the axes of the friction do not matter.
     """
     start = 0.1
     for way in (0.0, 2.0):
@@ -347,8 +346,7 @@ def test_dice(seed):
 @pytest.mark.parametrize("seed", range(12))
 def test_hostile_starts(seed):
     """
-    Boxes that start on a corner, an edge or a face, without friction or with very much: energy never grows, or the simulation fails with
-    the cause.
+    Boxes start on a corner, an edge or a face, without friction or with very much. Energy never grows, or the simulation fails with the cause.
     """
     chance = np.random.default_rng(seed)
     turn = [Rotation.from_euler("zyx", [chance.uniform(0, 6), *angles]) for angles in (chance.uniform(0.1, 1.4, 2), (chance.uniform(0.1, 1.4), 0), (0, 0))][seed % 3]
@@ -371,8 +369,8 @@ def test_hostile_starts(seed):
 @pytest.mark.parametrize("slip", [0.02, 0.0])
 def test_tippe_top(slip):
     """
-    The spin inverts the top and dissipates energy; Jellett's integral, the angular momentum times the vector from the centre of mass to the
-    contact point, is conserved.
+    The spin inverts the top and dissipates energy. Jellett's integral is conserved: the angular momentum times the vector from the centre of mass to
+    the contact point.
     """
     m, r, moment = 1.0, 0.02, 0.4 * 0.02**2
     values = {"m": m, "r": r, "az": r, "mu": 0.1, "avy": slip} | pose("a", Rotation.from_euler("x", 0.3), [0, 0, 150.0])

@@ -50,8 +50,8 @@ def vector(v):
 
 class Reference:
     """
-    Pinocchio's model in the FMU's coordinates. Pinocchio has a coordinate for each joint, also for mimicking ones, describes an unlimited
-    angle by its cosine and sine, and the velocity of a free base along its own axes.
+    Pinocchio's model in the FMU's coordinates. Pinocchio has a coordinate for each joint, also for mimicking ones. It describes an unlimited angle by
+    its cosine and sine, and the velocity of a free base along its own axes.
     """
 
     def __init__(self, name):

@@ -153,8 +153,8 @@ def anymal():
 @pytest.mark.release
 def test_anymal_stands(anymal, open_fmu):
     """
-    At rest the weights of all links, the forces on the feet and the torques of the motors balance along each of the 18 velocities, by
-    Pinocchio. With little friction the feet slide apart until no horizontal forces remain.
+    At rest the weights of all links, the forces on the feet and the torques of the motors balance along each of the 18 velocities. Pinocchio gives
+    the weights' share. With little friction the feet slide apart until no horizontal forces remain.
     """
     import pinocchio as pin
 
@@ -194,7 +194,7 @@ def test_a_mesh_that_is_missing(tmp_path):
     (tmp_path / "roller.urdf").write_text(mesh)
     (tmp_path / "system.xml").write_text(ROLLER)
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
-    assert result.returncode == 0 and "a <collision> of the link 'roller' touches nothing: the mesh 'roller.stl' is not there; expected a path" in result.stderr
+    assert result.returncode == 0 and "a <collision> of the link 'roller' touches nothing: the mesh 'roller.stl' does not exist; expected a path" in result.stderr
     (tmp_path / "system.xml").write_text(ROLLER.replace(' ground="true"', ""))
     reported = lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
     assert "left out, since the motion does not depend on them: collision" in reported and "1 mesh is not drawn; the first: the mesh 'roller.stl'" in reported

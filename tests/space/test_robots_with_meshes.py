@@ -91,12 +91,12 @@ def test_packages(tmp_path, folder):
 @pytest.mark.parametrize(
     "mesh, problem",
     [
-        ('<mesh filename="package://nowhere/cube.stl"/>', "the mesh 'package://nowhere/cube.stl' is not there; expected a path relative to this file, or"),
+        ('<mesh filename="package://nowhere/cube.stl"/>', "the mesh 'package://nowhere/cube.stl' does not exist; expected a path relative to this file, or"),
         ('<mesh filename="arm.dae"/>', "the mesh 'arm.dae' has an unknown format; expected STL or OBJ"),
         ('<mesh filename="short.stl"/>', "the mesh 'short.stl' is too short for STL"),
         ('<mesh filename="cube.obj" scale="1 2"/>', "the scale of a <mesh> is '1 2'; expected three numbers other than 0"),
         ('<mesh filename="cube.obj" scale="1 0 1"/>', "the scale of a <mesh> is '1 0 1'"),
-        ("<mesh/>", "the mesh '' is not there"),
+        ("<mesh/>", "the mesh '' does not exist"),
         ('<box size="1 2"/>', None),
         ('<sphere radius="-1"/>', None),
         ('<box size="1 1 1"/><box size="2 1 1"/>', None),
@@ -155,11 +155,11 @@ def test_geoms_that_are_meshes(tmp_path):
 def test_meshes_of_mjcf_that_are_lost(tmp_path):
     """Missing meshes give a message, and an error only if the motion depends on them."""
     loss = '<geom type="mesh" mesh="lost"/>'
-    assert "1 mesh is not drawn; the first: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, loss)[1]
-    assert "a <geom> of type mesh of the body 'roller' touches nothing: the mesh 'parts/lost.stl' is not there" in mjcf_scene_of(tmp_path, loss, ground=True)[1]
+    assert "1 mesh is not drawn; the first: the mesh 'parts/lost.stl' does not exist" in mjcf_scene_of(tmp_path, loss)[1]
+    assert "a <geom> of type mesh of the body 'roller' touches nothing: the mesh 'parts/lost.stl' does not exist" in mjcf_scene_of(tmp_path, loss, ground=True)[1]
     (tmp_path / "robot.xml").write_text(MJCF.replace("<inertial", "<site").replace("mass=", "name=").replace(' diaginertia="1 1 1"', "").format(loss))
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
-    assert result.returncode == 1 and "robot.xml:3: the inertia of a <geom> of type mesh is not known: the mesh 'parts/lost.stl' is not there" in result.stderr
+    assert result.returncode == 1 and "robot.xml:3: the inertia of a <geom> of type mesh is not known: the mesh 'parts/lost.stl' does not exist" in result.stderr
 
 
 @pytest.mark.parametrize("ground", [False, True])

@@ -254,8 +254,8 @@ def test_a_block_that_stands():
 
 def test_hard_contacts():
     """
-    A block falls on a corner and tumbles on a smooth floor: its energy never grows, no part is below the floor, and at rest the eight
-    forces carry the weight. A flat block bounces like a ball.
+    A block falls on a corner and tumbles on a smooth floor. Its energy never grows, no part is below the floor, and at rest the eight forces carry
+    the weight. A flat block bounces like a ball.
     """
     turn = Rotation.from_euler("xyz", [0.4, 0.3, 0.1])
     corners = np.array([[x, y, z] for x in (-0.2, 0.2) for y in (-0.3, 0.3) for z in (-0.1, 0.1)])
@@ -357,7 +357,7 @@ def test_centres_inside(other, height, warns, tmp_path):
 @pytest.mark.parametrize("kind", OBSTACLES)
 def test_centres_that_come_inside(kind, method, open_fmu):
     """
-    The ball touches after a fall of 0.1 m. From then on its height above this is -h + h cos(p t) - V/p sin(p t), until its centre is at the
+    The ball touches after a fall of 0.1 m. From then on its height above this is -h + h cos(p t) - V/p sin(p t). This ends when its centre is at the
     top of the box, 0.1 m below, or at the centre of the round obstacle, 0.2 m below.
     """
     k, m, g = 10, 2, 9.81

@@ -1,6 +1,6 @@
 """
-Bodies on two points of a line, whose frictions along the line are indeterminate one by one: they stick if any forces in the Coulomb cones
-carry the load, however it is shared.
+Bodies on two points of a line, whose frictions along the line are indeterminate one by one. They stick if any forces in the Coulomb cones carry the
+load, however it is shared.
 """
 
 import itertools

@@ -11,7 +11,8 @@ from fmpy.fmi2 import FMU2Model
 from fmu import build_systems
 
 G, L0, H = 9.81, 0.4, 0.3
-# A slider on a rail with a spring to a post beside the rail; two weights on one rope over a pulley; a tendon of two sliders with friction.
+# Three robots. A slider on a rail has a spring to a post beside the rail. Two weights hang on one rope over a pulley. A tendon connects two sliders
+# with friction.
 FILE = f"""<mujoco model="m"><option gravity="0 0 {-G}"/><worldbody>
   <site name="post" pos="0 {H} 0"/><site name="pulley" pos="2 0 1"/>
   <body name="slider"><joint name="s" type="slide" axis="1 0 0" ref="0.4"/><geom size="0.1" mass="2"/><site name="eye"/></body>

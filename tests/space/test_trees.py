@@ -79,9 +79,9 @@ def test_robot(open_fmu):
 
 def test_cost_grows_as_the_chain(tmp_path):
     """
-    The C source grows linearly with the length of a chain of joints, frames and bodies. An evaluation takes about as many operations per
-    joint as the articulated-body algorithm: 224 multiplications and 205 additions if one component of each offset is 0 (Featherstone 2008,
-    table 10.1), which is not the case here.
+    The C source grows linearly with the length of a chain of joints, frames and bodies. An evaluation takes about as many operations per joint as the
+    articulated-body algorithm. That has 224 multiplications and 205 additions if one component of each offset is 0 (Featherstone 2008, table 10.1),
+    which is not the case here.
     """
     sizes, operations = [], []
     for count in (100, 200):
@@ -121,7 +121,7 @@ def test_pendulum(name, open_fmu):
 @pytest.mark.parametrize("solver", ["taylor", "radau"])
 def test_arm(solver, open_fmu):
     """
-    Energy balance of a gantry that moves along three axes, with motors, a slider in its frame, and damping; radau computes the Jacobian by
+    Energy balance of a gantry that moves along three axes, with motors, a slider in its frame, and damping. radau computes the Jacobian by
     directional derivatives.
     """
     name = f"BranchedArm_{solver}"

@@ -1,5 +1,5 @@
 """
-Build FMUs of systems that tests write themselves, without CMake: lagc, one call of a compiler with the flags of scripts/fmu.cmake, and
+Build FMUs of systems that tests write themselves, without CMake. The steps are lagc, one call of a compiler with the flags of scripts/fmu.cmake, and
 pack.cmake, with the tools of an existing build. CMake alone would take as long per FMU as the C compiler.
 """
 

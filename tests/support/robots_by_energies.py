@@ -1,6 +1,6 @@
 """
-Accelerations of robots from their URDF with mpmath: links are placed by the definition of the format, energies follow from difference
-quotients of high precision, and accelerations from Lagrange's equation. Joints with quaternions are not covered.
+Accelerations of robots from their URDF with mpmath. Links are placed by the definition of the format. Energies follow from difference quotients of
+high precision, and accelerations from Lagrange's equation. Joints with quaternions are not covered.
 """
 
 import functools

@@ -1,6 +1,6 @@
 """
-Lagrange's equation for bodies in space, purely numerical: velocities from positions and rotation matrices by complex steps, and its
-derivatives by central differences of order 8, in long doubles.
+Lagrange's equation for bodies in space, purely numerical. Velocities follow from positions and rotation matrices by complex steps, the derivatives by
+central differences of order 8, in long doubles.
 """
 
 import numpy as np
@@ -35,9 +35,9 @@ def slope(function, at=0.0):
 
 class Mechanism:
     """
-    Mechanism of rigid bodies. places(time, q, inputs): bodies as (mass, rotation matrix, position, tensor). power(velocity, spin): power of
-    the other forces; its arguments return the velocity of a position, and the angular velocity of a rotation, as functions of (time, q,
-    inputs). Inputs are given with their rates.
+    Mechanism of rigid bodies. places(time, q, inputs): bodies as (mass, rotation matrix, position, tensor). power(velocity, spin): power of the other
+    forces. Its arguments return the velocity of a position, and the angular velocity of a rotation, as functions of (time, q, inputs). Inputs are
+    given with their rates.
     """
 
     def __init__(self, places, gravity=(0, 0, 0), power=None, potential=lambda time, q, inputs: 0):

@@ -1,6 +1,5 @@
 """
-One gap with several pieces, in whose corner a body comes to rest: the message names the contact and asks for one contact per piece, which
-works.
+A body comes to rest in the corner of one gap with several pieces. The message names the contact and asks for one contact per piece, which works.
 """
 
 import fmpy

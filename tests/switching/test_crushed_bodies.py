@@ -1,6 +1,6 @@
 """
-A body caught between prescribed motions is an error that names it when it is caught: in co-simulation, and in model exchange of FMI 2.0 and
-3.0, where an importer would pass through a wall.
+A body caught between prescribed motions is an error that names it when it is caught. This holds in co-simulation, and in model exchange of FMI 2.0
+and 3.0, where an importer would pass through a wall.
 """
 
 import re

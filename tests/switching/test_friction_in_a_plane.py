@@ -416,8 +416,7 @@ def test_two_frictions_at_one_place(open_fmu):
 @pytest.mark.parametrize("mu, e", [(0.05, 0.6), (0.4, 0.6), (0.05, 0), (0.4, 1)])
 def test_a_bounce_with_spin(open_fmu, mu, e):
     """
-    The impulse of friction is mu times that of the contact if the contact point keeps sliding; otherwise it is 2/7 of its velocity, which
-    stops the slip.
+    The impulse of friction is mu times that of the contact if the contact point keeps sliding. Otherwise it is 2/7 of its velocity, which stops the slip.
     """
     instance = open_fmu("PlaneBall").initialize({"z": 0.35, "mu": mu, "e": e, "vx": 1, "wx": 10, "wy": 5}, tolerance=1e-10)
     fall = np.sqrt(0.6 / G)

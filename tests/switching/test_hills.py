@@ -1,6 +1,5 @@
 """
-Event indicators that are flat at the start of a step and have a narrow hill within it: no method misses a hill, in one communication step
-or many.
+Event indicators that are flat at the start of a step and have a narrow hill within it. No method misses a hill, in one communication step or many.
 """
 
 import math

@@ -1,6 +1,5 @@
 """
-Friction along a velocity that jumps, such as that of a belt that starts instantly: a sticking body slides, and sticks again at the new
-velocity.
+Friction along a velocity that jumps, such as that of a belt that starts instantly. A sticking body slides, and sticks again at the new velocity.
 """
 
 import fmpy

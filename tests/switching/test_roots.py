@@ -18,7 +18,7 @@ from fmu import Instance, archive, build_systems
 
 METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
 K = 0.5
-# Water that rises to the crest of a weir; a crest that rises, too; an orifice with flow in both directions; a spring that begins at x = 0.
+# Cases: water rises to the crest of a weir; a crest rises, too; an orifice has flow in both directions; a spring begins at x = 0.
 SYSTEMS = {
     "Weir": """<input name="q" unit="m/s" start="0.1"/><parameter name="c" start="1" unit="m"/><parameter name="k" start="0.5" unit="m0.5/s"/>
       <state name="h" unit="m" start="0.5" rate="q - k*sqrt(max(0, h - c))"/>""",
@@ -101,7 +101,10 @@ def test_flow_turns_round(method, step):
 @EVERY
 @pytest.mark.parametrize("step", [0.125, 0.25])
 def test_a_spring_begins_with_a_root(method, step):
-    """The energy is that of the start; the mass leaves the spring with the opposite velocity, after 2 (integral of dx/sqrt(1 - 2 x^1.5)), a beta function."""
+    """
+    The energy is that of the start; the mass leaves the spring with the opposite velocity, after 2 (integral of dx/sqrt(1 - 2 x^1.5)), a beta
+    function.
+    """
     time, x, v = motion("Spring", method, step, 5.0, "x", "v")
     np.testing.assert_allclose(v**2 / 2 + np.maximum(0, x) ** 1.5, 0.5, rtol=0, atol=2e-7)
     contact = float(mpmath.mpf(4) / 3 * mpmath.mpf(0.5) ** (mpmath.mpf(2) / 3) * mpmath.beta(mpmath.mpf(2) / 3, 0.5))

@@ -1,5 +1,5 @@
 """
-Contacts and frictions at the limit of rounding: late times, long steps after tiny bounces, gaps that are differences of large terms,
+Contacts and frictions at the limit of rounding. Cases are late times, long steps after tiny bounces, gaps that are differences of large terms,
 lift-off without speed, and dead centres.
 """
 

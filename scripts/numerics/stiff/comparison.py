@@ -146,7 +146,10 @@ def ratios(samples, problem, way, level):
 
 
 def exudyn_ratio(samples, problem, way, level):
-    """Return the ratio of times of exudyn's faster method to auto: infinite if it does not reach the error, NaN if it cannot express the problem."""
+    """
+    Return the time of exudyn's faster method as a multiple of auto's. It is infinite if the method does not reach the error, NaN if it cannot
+    express the problem.
+    """
     times = [seconds_to(samples, problem.name, way, peer, level) for peer in PEERS if peer.startswith("exudyn")]
     tried = not math.isnan(smallest_error(samples, problem.name, way, "exudyn"))
     return ratio(min(times), seconds_to(samples, problem.name, way, "auto", level)) if tried else math.nan

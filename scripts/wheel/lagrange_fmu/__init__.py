@@ -86,7 +86,7 @@ def simulate(
     output : str or sequence of str, optional
         Names of the variables to record in place of all outputs. Local variables, such as "totalEnergy", are allowed.
     input : path, array, dict, DataFrame or callable, optional
-        A CSV, a structured array, a dict of arrays or a DataFrame has the columns "time" and names of inputs. Inputs are linear between rows;
+        A CSV, a structured array, a dict of arrays or a DataFrame with the columns "time" and names of inputs. Inputs are linear between rows;
         two rows with the same time are a jump. A function of time returns a dict of numbers by name, or a number for each input.
         A function of the time and the simulation, such as lambda t, sim: -sim["x"], gives the inputs that hold over each step.
         A dict of functions and numbers by name is allowed, too.
@@ -400,8 +400,8 @@ def fit(
     system : path
         An FMU, a system in XML, a robot in URDF, or a folder that contains a system.xml.
     data : path, structured array, or a list of these
-        Measurements, one item for each experiment. The columns are "time", measured outputs or states, and measured inputs; the first line of
-        a CSV names them, optionally with units; a dict of arrays or a DataFrame also serves. NaN and empty cells are missing measurements.
+        Measurements, one item for each experiment. The columns are "time", measured outputs or states, and measured inputs. The first line of a CSV
+        names them, optionally with units. A dict of arrays or a DataFrame is allowed too. NaN and empty cells are missing measurements.
     vary : sequence of str
         Names of the parameters and start values to fit, common to all experiments.
     start_values : dict of float, optional

@@ -1,11 +1,11 @@
 """
 Differentiate one number of a motion by many parameters, start values and inputs.
 
-For x' = f(t, x, p) and the number G = sum_i g_i(x(t_i)) + integral of h(x) dt, the adjoint equation is a' = -(df/dx)^T a - (dh/dx)^T, solved
-backwards, with a jump of (dg_i/dx)^T at t_i. Then dG/dp = integral of (df/dp)^T a dt + (dx(0)/dp)^T a(0). The FMU evaluates (df/dx)^T a and
-(df/dp)^T a in one reverse sweep (adjoint derivatives of FMI 3.0). At an event a is multiplied by the transposed saltation matrix. The cost does
-not depend on the number of parameters, unless an event or the start depends on them (Y. Cao, S. Li, L. Petzold, R. Serban: Adjoint sensitivity
-analysis for differential-algebraic equations, 2003).
+For x' = f(t, x, p) and the number G = sum_i g_i(x(t_i)) + integral of h(x) dt, the adjoint equation is a' = -(df/dx)^T a - (dh/dx)^T. It is solved
+backwards, with a jump of (dg_i/dx)^T at t_i. Then dG/dp = integral of (df/dp)^T a dt + (dx(0)/dp)^T a(0). The FMU evaluates (df/dx)^T a and (df/dp)^T
+a in one reverse sweep (adjoint derivatives of FMI 3.0). At an event a is multiplied by the transposed saltation matrix. The cost does not depend on
+the number of parameters, unless an event or the start depends on them (Y. Cao, S. Li, L. Petzold, R. Serban: Adjoint sensitivity analysis for
+differential-algebraic equations, 2003).
 """
 
 from dataclasses import dataclass

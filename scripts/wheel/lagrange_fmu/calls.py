@@ -57,7 +57,10 @@ def _checked_value(name, value, annotation):
 
 
 def checked(function):
-    """Return the function, with a check that raises Problem for arguments that do not fit the signature, or are no paths, times or numbers where these are expected."""
+    """
+    Return the function with a check of its arguments. It raises Problem for arguments that do not fit the signature, and for wrong types of paths,
+    times or numbers.
+    """
     signature = inspect.signature(function)
     plain = signature.replace(parameters=[one.replace(annotation=inspect.Parameter.empty) for one in signature.parameters.values()])
 

@@ -1,12 +1,13 @@
 """
 Find equilibria of a system: f(x, p) = 0 for the time derivatives f of all states x, and h(x) = h0 for held values, with varying inputs or parameters p.
 
-The search is a damped Newton method on the manifold of the constraints. With an orthonormal basis T of its tangent space, each step solves
-J (T z, dp) = -(f, h - h0) by least squares of least norm, so that coordinates on which nothing depends stay at the guess. A step is limited to a share
-of each value, and halved until the residual decreases; the FMU's initialization projects its end onto the constraints. Residuals and values are
-relative to nominal values. If a full step exceeds the limit, or no part of it decreases the residual, as at a horizontal pendulum, coordinates first
-move along their accelerations, which leads towards a stable equilibrium. These moves grow, keep contacts closed, and are halved at obstacles. The search ends when a step is negligible or after STEPS steps.
-Each step costs a Jacobian and, with constraints, a basis of the tangent space, see linearization.py.
+The search is a damped Newton method on the manifold of the constraints. With an orthonormal basis T of its tangent space, each step solves J (T z,
+dp) = -(f, h - h0) by least squares of least norm. So coordinates on which nothing depends stay at the guess. A step is limited to a share of each
+value, and halved until the residual decreases; the FMU's initialization projects its end onto the constraints. Residuals and values are relative to
+nominal values. A full step may exceed the limit, or no part of it decreases the residual, as at a horizontal pendulum. Then coordinates first move
+along their accelerations, which leads towards a stable equilibrium. These moves grow, keep contacts closed, and are halved at obstacles. The search
+ends when a step is negligible or after STEPS steps. Each step costs a Jacobian and, with constraints, a basis of the tangent space, see
+linearization.py.
 """
 
 from dataclasses import dataclass
@@ -147,7 +148,10 @@ class _Search:
         return coordinates[velocities < count], velocities[velocities < count]
 
     def downhill(self, residual):
-        """Return the direction of coordinates along their accelerations, and of other states along their rates, of length 1 relative to nominal values; None if there is none."""
+        """
+        Return the direction of coordinates along their accelerations, and of other states along their rates. Its length is 1 relative to nominal
+        values; it is None if all are 0.
+        """
         count = len(self.point.states)
         coordinates, velocities = self.moving()
         move = np.zeros(len(self.size))
@@ -202,7 +206,10 @@ class _Search:
         return values
 
     def move_downhill(self, values, residual):
-        """Return the values and the residual after a move downhill: longer than the last one if it continues straight on, and halved until there is such a position."""
+        """
+        Return the values and the residual after a move downhill. The move is longer than the last one if it continues straight on, and is halved
+        until such a position exists.
+        """
         direction = self.downhill(residual)
         if direction is None:
             return self.go_to(values)

@@ -70,8 +70,8 @@ def _directions(slopes, accuracy):
     """
     Decompose J, the slopes, whose relative error is `accuracy`.
 
-    Return the lengths of its columns; the right singular vectors of the scaled J, divided by their singular values, k x n; and a basis of its
-    null space, (n - k) x n, in which components below their error are 0.
+    Return the lengths of its columns, the right singular vectors of the scaled J divided by their singular values, k x n, and a basis of its null
+    space, (n - k) x n. Components of the basis below their error are 0.
     """
     sizes = np.linalg.norm(slopes, axis=0)
     sizes[sizes == 0] = 1.0

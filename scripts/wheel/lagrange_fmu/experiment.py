@@ -79,7 +79,7 @@ class Experiment:
         """
         Unwrap an angle that jumps and lies within one turn.
 
-        If half of the steps or more are jumps, the rows are too sparse to distinguish jumps from motion, and the angle stays as it is.
+        If half of the steps or more are jumps, the rows are too sparse to distinguish jumps from motion. The angle then stays as it is.
         """
         rows = self.is_measured[:, i]
         values, times = self.values[rows, i], self.data["time"][rows]

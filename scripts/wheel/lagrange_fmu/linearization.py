@@ -1,10 +1,10 @@
 """
 Linearize a system at a point, by the directional derivatives of its FMU.
 
-With constraints the states x lie on a manifold. Initialization and event mode project states onto it; the derivative P of this projection at a
-point of the manifold is itself a projection (P^2 = P) onto the tangent space. Finite differences of fourth order give P, a singular value
-decomposition its range T, orthonormal columns. The first rows that are far from dependent choose independent states, x_i = T_i z, and then
-A = (df/dx)_i T T_i^-1. The cost is four projections for each state.
+With constraints the states x lie on a manifold. Initialization and event mode project states onto it. The derivative P of this projection at a point
+of the manifold is itself a projection (P^2 = P) onto the tangent space. Finite differences of fourth order give P, a singular value decomposition its
+range T, orthonormal columns. The first rows that are far from dependent choose independent states, x_i = T_i z, and then A = (df/dx)_i T T_i^-1. The
+cost is four projections for each state.
 """
 
 import warnings
@@ -55,7 +55,7 @@ class Linearization(NamedTuple):
         """
         Return the frequency response of the outputs `of` to the inputs `by`, by default of all to all.
 
-        It has `frequency` in rad/s, by default around the poles, complex `values`, `magnitude`, `phase` in degrees, and plot(); bode["theta", "F"] is
+        It has `frequency` in rad/s, by default around the poles, complex `values`, `magnitude`, `phase` in degrees, and plot(). bode["theta", "F"] is
         the response of one output to one input. Jupyter shows the plot.
         """
         return responses.bode(self, of, by, frequencies)
@@ -63,7 +63,8 @@ class Linearization(NamedTuple):
     @checked
     def step(self, of=None, by=None, times=None):
         """
-        Return the response of the outputs `of` to a unit step of each input `by`, by default of all to all, as changes from the operating point.
+        Return the response of the outputs `of` to a unit step of each input `by`, as changes from the operating point. By default all outputs and
+        inputs are taken.
 
         It has `time` in s, by default until the slowest poles have decayed, `values`, and plot(); step["theta", "F"] is the response of one output to
         one input. Jupyter shows the plot.
@@ -135,7 +136,10 @@ def tangents(point, at):
 
 
 def independent(directions, shares):
-    """Return the indices of as many independent rows as there are columns: the first rows whose distance from the span of those before exceeds `shares` of the largest one."""
+    """
+    Return the indices of as many independent rows as there are columns. They are the first whose distance from the span of those before exceeds
+    `shares` of the largest one.
+    """
     rows, chosen = directions.copy(), []
     for _ in range(directions.shape[1]):
         lengths = np.linalg.norm(rows, axis=1)

@@ -1,8 +1,8 @@
 """
 Compute frequency responses and step responses of a linearized system.
 
-The transfer function is G(s) = C (s - A)^-1 B + D. The step response is exact at its times: the exponential of [[A, B], [0, 0]] h, by scaling and squaring
-of its Taylor series, maps (x, u) from a time to the next one.
+The transfer function is G(s) = C (s - A)^-1 B + D. The step response is exact at its times. The exponential of [[A, B], [0, 0]] h maps (x, u) from a
+time to the next one, by scaling and squaring of its Taylor series.
 """
 
 from dataclasses import dataclass

@@ -263,8 +263,8 @@ def from_sympy(
     points : dict, optional
         Points that the animation shows, by name: vectors from the origin, such as P.pos_from(O), or tuples of two or three coordinates.
     states : dict, optional
-        States of first order, such as a pressure or the integral of a controller: the time derivative of each dynamicsymbol or name, by all other
-        quantities and accelerations.
+        States of first order, such as a pressure or the integral of a controller. The values are time derivatives of each dynamicsymbol or name, as
+        functions of all other quantities and accelerations.
 
     Returns
     -------

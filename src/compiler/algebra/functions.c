@@ -142,8 +142,8 @@ static Node difference(struct Graph *graph, Node node) {
 }
 
 /*
- * Returns the auxiliary of a power. Whole powers come from smaller ones, so that a base of 0 is allowed; negative ones
- * are reciprocals; exponents that vary in time use exp and log.
+ * Returns the auxiliary of a power. Whole powers come from smaller ones, so that a base of 0 is allowed. Negative
+ * ones are reciprocals; exponents that vary in time use exp and log.
  */
 static Node auxiliary_of_power(struct Graph *graph, Node node) {
   Node base = graph->vertices[node].left, exponent = graph->vertices[node].right;

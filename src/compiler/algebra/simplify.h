@@ -4,11 +4,11 @@
  * surveys such rules).
  *
  * Each result is in a local normal form: a node is coefficient * base with at most one numeric factor, which is the
- * left operand; operands of sums and products are ordered by number; a numeric whole power of a power is one power; a
- * product is regrouped by base if a factor cancels. The form is not canonical: equal expressions may be different
- * nodes, and rational.h decides more cases at a higher cost. A sum compares at most TERM_LIMIT terms of each operand, a
- * product at most FACTOR_LIMIT factors, so the cost of a node is bounded. Each combination of two terms leaves one, so
- * the recursion ends.
+ * left operand. Operands of sums and products are ordered by number. A numeric whole power of a power is one power,
+ * and a product is regrouped by base if a factor cancels. The form is not canonical: equal expressions may be
+ * different nodes, and rational.h decides more cases at a higher cost. A sum compares at most TERM_LIMIT terms of
+ * each operand, a product at most FACTOR_LIMIT factors, so the cost of a node is bounded. Each combination of two
+ * terms leaves one, so the recursion ends.
  */
 #pragma once
 

@@ -20,8 +20,8 @@ enum { DEPTH_LIMIT = 60 };
 enum { SHORT_SUM = 24 };
 
 /*
- * Weights of the length of a form. A form without expansion counts 1.4 times, since products of inertia are easier to
- * read when multiplied out; a whole side of an equation that is one product counts 1.25 times.
+ * Weights of the length of a form. A form without expansion counts 1.4 times, since products of inertia are easier
+ * to read when multiplied out. A whole side of an equation that is one product counts 1.25 times.
  */
 static const double compact = 1.4, factored = 1.25;
 

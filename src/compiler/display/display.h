@@ -1,7 +1,8 @@
 /*
- * Expressions as a textbook prints them, as text in the language of system.xml: cos(a - b) in place of products of
- * sines and cosines, parameters collected in factors such as (m1 + m2), accelerations before squares of velocities,
- * then other terms and inputs. Only the text differs; the value is that of the node but for rounding.
+ * Expressions as a textbook prints them, as text in the language of system.xml. cos(a - b) replaces products of
+ * sines and cosines, and parameters are collected in factors such as (m1 + m2). Accelerations come before squares
+ * of velocities, then other terms and inputs. Only the text differs; the value is that of the node but for
+ * rounding.
  *
  * The text is the shortest of several: with and without products that are multiplied out (terms.h), and as a reduced
  * fraction. Expressions beyond the limits of terms.h keep the form of formula.h.

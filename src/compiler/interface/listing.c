@@ -233,7 +233,7 @@ static bool steps_in_time(const struct Model *model) {
 static const char *total_energy_description(const struct Model *model) {
   const struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
-  bool changes = switches->contact_count + switches->event_count > 0 || model->energies.driven ||
+  bool changes = switches->contact_count + switches->event_count > 0 || model->energies.has_prescribed ||
                  model->prescribed.constraint != NULL || model->linearized ||
                  graph_depends_on(graph, model->energies.kinetic.node, TIME) ||
                  graph_depends_on(graph, model->energies.potential.node, TIME) ||

@@ -13,7 +13,8 @@ static void append_row(struct Constraints *constraints, const struct Model *mode
   for (size_t i = 0; i < gradient.count; i++) {
     size_t coordinate = (size_t)graph_symbol_of(graph, gradient.symbols[i])->index;
     bool is_prescribed = model->prescribed.motions[coordinate].is_prescribed;
-    elements_append(is_prescribed ? &constraints->driven : &constraints->jacobian, row, coordinate, gradient.values[i]);
+    elements_append(is_prescribed ? &constraints->prescribed : &constraints->jacobian, row, coordinate,
+                    gradient.values[i]);
   }
 }
 

@@ -23,7 +23,7 @@ struct Constraints {
    * constraints and coordinates. They make K nonsymmetric, see nonsymmetric.h.
    */
   struct Elements nonsymmetric;
-  struct Elements driven; /* elements of J for prescribed coordinates, which constraints do not accelerate */
+  struct Elements prescribed; /* elements of J for prescribed coordinates, which constraints do not accelerate */
 };
 
 /* Derives the constraints of the model at all three levels. */

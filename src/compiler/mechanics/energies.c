@@ -73,10 +73,10 @@ static struct Degrees degrees_of(const struct Model *model, Node target) {
   return of[cone_slot(cone, target)];
 }
 
-Node energy_of_kinetic_term(const struct Model *model, Node term, bool *driven) {
+Node energy_of_kinetic_term(const struct Model *model, Node term, bool *is_prescribed) {
   struct Degrees degrees = degrees_of(model, term);
   /* Terms of other degrees may cancel once multiplied out. */
   if (degrees.lowest != 2 || degrees.highest != 2) degrees = degrees_of(model, simplify_fraction(model->graph, term));
-  *driven = degrees.highest == 2 && degrees.lowest < 2;
+  *is_prescribed = degrees.highest == 2 && degrees.lowest < 2;
   return degrees.highest == 2 ? term : negate(model->graph, stored_energy(model, term));
 }

@@ -114,14 +114,14 @@ static void derive_motion(const struct Model *model, struct Equations *equations
 static void add_constraints(const struct Model *model, struct Equations *equations) {
   const struct Constraints *constraints = equations->constraints;
   struct Graph *graph = model->graph;
-  const struct Elements *free_ones = &constraints->jacobian, *driven = &constraints->driven;
+  const struct Elements *free_ones = &constraints->jacobian, *prescribed = &constraints->prescribed;
   for (size_t k = 0; k < free_ones->count; k++) {
     Node *sum = &equations->residual[free_ones->positions[k].column];
     *sum = add(graph, *sum, constraint_force_along(graph, free_ones, k, model->unknowns.forces));
   }
-  for (size_t k = 0; k < driven->count; k++) {
-    Node *sum = &equations->reactions[model->prescribed.motions[driven->positions[k].column].reaction];
-    *sum = add(graph, *sum, constraint_force_along(graph, driven, k, model->unknowns.forces));
+  for (size_t k = 0; k < prescribed->count; k++) {
+    Node *sum = &equations->reactions[model->prescribed.motions[prescribed->positions[k].column].reaction];
+    *sum = add(graph, *sum, constraint_force_along(graph, prescribed, k, model->unknowns.forces));
   }
   for (size_t j = 0; j < constraints->count; j++) {
     equations->residual[equations->count + j] = constraints->acceleration[j];
@@ -182,7 +182,7 @@ static Node power_of_forces(const struct Model *model, const struct Equations *e
     power = add(graph, power, multiply(graph, whole, model->velocities.items[i].node));
   }
   power = add(graph, power, power_of_moving_points(model));
-  return add(graph, power, model->forces.driven_power.node);
+  return add(graph, power, model->forces.prescribed_power.node);
 }
 
 static void derive_energies(const struct Model *model, struct Equations *equations, const Node *force) {

@@ -3,8 +3,8 @@
 #include "algebra/kinks.h"
 
 /*
- * True if the system may be stiff: it has dissipation, or inputs whose course is unknown, so that fast modes may decay
- * while slow ones continue.
+ * True if the system may be stiff, with fast modes that decay while slow ones continue: it has dissipation, or
+ * inputs whose course is unknown.
  */
 static bool may_be_stiff(const struct Model *model, const struct Equations *equations) {
   const struct Graph *graph = model->graph;

@@ -119,9 +119,10 @@ static Node velocity_along_slip(struct Graph *graph, const struct Friction *alon
 }
 
 /*
- * Returns the lower indicator of a friction in a plane, in units of the velocity. It falls through 0 if, while sliding,
- * the speed falls to lower; while slipping along the slip direction, the velocity along it falls to -lower; while
- * sticking, the force reaches the stiction. With a prescribed velocity at rest, it does so if the speed rises to lower.
+ * Returns the lower indicator of a friction in a plane, in units of the velocity. It falls through 0 if, while
+ * sliding, the speed falls to lower. While slipping along the slip direction it does so if the velocity along it
+ * falls to -lower; while sticking, if the force reaches the stiction. With a prescribed velocity at rest, it does
+ * so if the speed rises to lower.
  */
 static Node lower_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
@@ -139,8 +140,8 @@ static Node lower_indicator(const struct Model *model, const struct Friction *al
 
 /*
  * Returns the upper indicator. It falls through 0 if the speed rises to upper, or, while slipping along the slip
- * direction, the velocity perpendicular to it; with a negative upper, if the velocity along the slip direction falls to
- * it.
+ * direction, the velocity perpendicular to it. With a negative upper it does so if the velocity along the slip
+ * direction falls to it.
  */
 static Node upper_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;

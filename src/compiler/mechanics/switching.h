@@ -10,8 +10,8 @@ struct SwitchingExpressions {
   size_t branch_count, assignment_count;
   size_t energy_count; /* kinetic, potential, and momenta if modes affect the kinetic one; 0 without holds_energy */
   /*
-   * Indicators, as in indicator[] of struct SwitchTable: of contacts, the gap while open, the force while closed; of
-   * frictions, the velocity while sliding, the margin to the stiction while sticking.
+   * Indicators, as in indicator[] of struct SwitchTable: of contacts, the gap while open and the force while
+   * closed. Those of frictions are the velocity while sliding, and the margin to the stiction while sticking.
    */
   Node *indicators;
   size_t indicator_count;

@@ -1,6 +1,6 @@
 /*
- * <line>: lines that are drawn, without mechanics. Their expressions have a graph of their own, a copy of the model's
- * with further nodes, so that drawings never change the order of terms in the equations.
+ * <line>: lines that are drawn, without mechanics. Their expressions have a graph of their own, a copy of the
+ * model's with further nodes. So drawings never change the order of terms in the equations.
  */
 #pragma once
 

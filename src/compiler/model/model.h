@@ -161,7 +161,7 @@ struct Energies {
   struct Quantity kinetic;          /* K of L = K - U, of bodies and <kinetic> terms */
   struct Quantity explicit_kinetic; /* of <kinetic> terms only */
   struct Quantity kinetic_energy;   /* the energy of both, see energies.h */
-  bool driven;                      /* masses have a prescribed velocity, even if all velocities are 0 */
+  bool has_prescribed;              /* masses have a prescribed velocity, even if all velocities are 0 */
   struct Quantity potential, dissipation;
   /* The sums of <kinetic> terms, potentials and dissipations, also as functions of virtual displacements. */
   struct Quantity displaced_kinetic, displaced_potential, displaced_dissipation;
@@ -174,8 +174,8 @@ struct Forces {
   size_t point_count;
   struct Torque *torques;
   size_t torque_count;
-  struct Quantity driven_power; /* W: power of Cartesian forces along the motion that only time prescribes */
-  bool any;                     /* the model has forces, dissipation or prescribed motions */
+  struct Quantity prescribed_power; /* W: power of Cartesian forces along the motion that only time prescribes */
+  bool any;                         /* the model has forces, dissipation or prescribed motions */
 };
 
 /* The symbols that the equations of motion are solved for. */

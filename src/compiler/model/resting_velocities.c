@@ -74,7 +74,7 @@ static void append_resting_velocities(struct Model *model) {
     const struct Variable *velocity = &model->velocities.items[i];
     bool is_prescribed = model->prescribed.motions[i].is_prescribed;
     if (!is_prescribed && !cone_has(graph->cone, velocity->node)) continue;
-    enum RestingKind kind = is_prescribed ? RESTING_DRIVE : RESTING_VELOCITY;
+    enum RestingKind kind = is_prescribed ? RESTING_PRESCRIBED : RESTING_VELOCITY;
     append_resting(model, velocity->name, (struct RestingVelocity){.kind = kind, .coordinate = i});
   }
 }
@@ -123,8 +123,8 @@ static void replace_in_indicators(struct Model *model) {
 /* --- Sums of velocities in indicators, such as w1 - w3 --- */
 
 /*
- * Returns the sum of several velocities, with coefficients that do not depend on velocities, from which the value differs
- * by a term without velocities; ZERO if it is not such a sum.
+ * Returns the sum of several velocities from which the value differs by a term without velocities. The coefficients
+ * do not depend on velocities; ZERO if the value is not such a sum.
  */
 static Node sum_of_velocities(struct Graph *graph, Node value) {
   if (graph_depends_on(graph, value, ACCELERATION)) return ZERO;

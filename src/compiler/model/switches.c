@@ -40,8 +40,8 @@ Node square_of_speed(struct Graph *graph, const struct Friction *along) {
 }
 
 /*
- * Below this share of the lower speed, the friction along a prescribed velocity falls to 0: such a velocity may pass
- * through 0, where it has no direction.
+ * Below this share of the lower speed, the friction along a prescribed velocity falls to 0. Such a velocity may
+ * pass through 0, where it has no direction.
  */
 static const double resting_share = 0.1;
 

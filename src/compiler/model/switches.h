@@ -28,10 +28,10 @@ struct Contact {
 
 /*
  * Coulomb friction in a plane, along two velocities. It is two consecutive frictions of the model, "along" and
- * "across", with one mode: 1 while it slides against the velocity in the plane, 0 while it sticks, -1 while it slips
- * along the slip direction, which is given, as at the onset of slip. While it sticks, the slip direction is the load
- * that it carries in addition to its constraint, as a share of the sliding force; it is 0 unless several frictions
- * share a load.
+ * "across", with one mode. The mode is 1 while it slides against the velocity in the plane, and 0 while it sticks.
+ * It is -1 while it slips along a given slip direction, as at the onset of slip. While it sticks, the slip
+ * direction is the load that it carries in addition to its constraint, as a share of the sliding force. It is 0
+ * unless several frictions share a load.
  */
 enum PlaneAxis { NO_PLANE, ALONG, ACROSS };
 
@@ -43,12 +43,12 @@ struct FrictionPlane {
 };
 
 /*
- * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, and 0 while it sticks: then a
- * constraint keeps the velocity at 0 with a force of at most stiction. `reported` is the mode that outputs show. It is
- * also 0 while other constraints keep the velocity at 0, when the friction may act with its sliding force at rest.
- * Against a negative velocity the sliding force is sliding_back, and the largest static one stiction_back. A friction
- * with a prescribed velocity never sticks and has no force at rest: its mode is that of a branch on the velocity's
- * sign, or in a plane its own.
+ * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, and 0 while it sticks. Then
+ * a constraint keeps the velocity at 0 with a force of at most stiction. `reported` is the mode that outputs show.
+ * It is also 0 while other constraints keep the velocity at 0, when the friction may act with its sliding force at
+ * rest. Against a negative velocity the sliding force is sliding_back, and the largest static one stiction_back. A
+ * friction with a prescribed velocity never sticks and has no force at rest. Its mode is that of a branch on the
+ * velocity's sign, or in a plane its own.
  */
 struct Friction {
   size_t constraint; /* index among the model's constraints */

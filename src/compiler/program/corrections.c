@@ -15,8 +15,8 @@
 #include "saddle.h"
 
 /*
- * Factor on the diagonal elements of M for fixed coordinates: large enough that only the other coordinates move at the
- * start, small enough that the factors of K keep their digits.
+ * Factor on the diagonal elements of M for fixed coordinates. It is large enough that only the other coordinates
+ * move at the start, and small enough that the factors of K keep their digits.
  */
 static const double weight_of_fixed = 1e12;
 
@@ -53,8 +53,8 @@ static void append_solved(const struct Program *program, struct CodeGenerator *g
 }
 
 /*
- * Appends the correction of one block: solves for side, then copies the changes of its coordinates and the last pivots
- * of its constraints to the targets.
+ * Appends the correction of one block. Solves for side, then copies the changes of its coordinates and the last
+ * pivots of its constraints to the targets.
  */
 static void append_block(const struct Program *program, struct CodeGenerator *generator, size_t number,
                          const Node *right_side, bool starting) {

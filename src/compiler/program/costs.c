@@ -27,8 +27,8 @@ static double operations_of_jacobian(const struct Program *program) {
 }
 
 /*
- * Sums the elements of the rows of L, diagonals included, and the squares of these row lengths: the multiplications of
- * a triangular solution, and of a factorization.
+ * Sums the elements of the rows of L, diagonals included, and the squares of these row lengths. The sums count the
+ * multiplications of a triangular solution, and of a factorization.
  */
 static void count_factors(const struct Program *program, double *elements, double *squares) {
   const struct Elimination *factors = program->expressions->jacobian->factors;
@@ -71,10 +71,10 @@ static double work_of_series(const struct Program *program) {
 }
 
 /*
- * Estimates the work that counts against the limit of a communication step. A step costs, beyond its evaluation, the
- * rest of the series, CORRECTIONS Newton steps of the projection onto the constraints, and SEARCHES evaluations of the
- * indicators, with LOOK more operations each, in the search for events. EVENT is the fixed part of an event. The
- * constants were fitted, like those of auto.c, to measured times of the systems in fmu/.
+ * Estimates the work that counts against the limit of a communication step. A step costs, beyond its evaluation,
+ * the rest of the series and CORRECTIONS Newton steps of the projection onto the constraints. The search for events
+ * costs SEARCHES evaluations of the indicators, with LOOK more operations each. EVENT is the fixed part of an
+ * event. The constants were fitted, like those of auto.c, to measured times of the systems in fmu/.
  */
 struct StepWork step_work_of(const struct Program *program) {
   enum { CORRECTIONS = 10, SEARCHES = 40, LOOK = 100, EVENT = 20000 };

@@ -8,14 +8,14 @@
 #include "program/series/series_program.h"
 
 /*
- * The form of the generated code. BY_SIZE: small systems as C statements, large ones as instruction tables; TABLES:
- * tables except for the functions of struct SwitchTable; ALL_TABLES: tables for these too, for an interpreter.
+ * The form of the generated code. BY_SIZE: small systems as C statements, large ones as instruction tables. TABLES:
+ * tables except for the functions of struct SwitchTable. ALL_TABLES: tables for these too, for an interpreter.
  */
 enum CodeForm { BY_SIZE, STATEMENTS, TABLES, ALL_TABLES };
 
 /*
- * How the middle terms of the Cauchy products in an order are computed (include/series.h): at each product, in one
- * loop for all products, or in a loop over an array of factor pairs.
+ * Loops for the middle terms of the Cauchy products in an order (include/series.h). There is one at each product,
+ * one for all products, or one over an array of factor pairs.
  */
 enum ProductForm { PRODUCTS_APART, PRODUCTS_TOGETHER, PRODUCTS_LISTED };
 

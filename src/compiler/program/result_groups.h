@@ -10,10 +10,10 @@ struct ResultGroups {
 };
 
 /*
- * Groups the components of one object, such as a point's x, y and z. Objects join a group if they need many and mostly
- * the same nodes, as the bodies at the end of a chain do, and if the group needs at most 1.5 times the nodes of each
- * object alone. The code of a chain is then as long as the chain, not as its square. Greedy: each object joins the
- * first of the open groups that fits; O(objects * nodes).
+ * Groups the components of one object, such as a point's x, y and z. Objects join a group if they need many and
+ * mostly the same nodes, as the bodies at the end of a chain do. The group needs at most 1.5 times the nodes of
+ * each object alone. The code of a chain is then as long as the chain, not as its square. Greedy: each object joins
+ * the first of the open groups that fits; O(objects * nodes).
  */
 struct ResultGroups result_groups_of(const struct Expressions *expressions);
 

@@ -1,8 +1,8 @@
 /*
  * A condition depends on the signs of indicators, and on modes and Booleans by themselves, in short on atoms.
- * Indicators that are r u + c with numbers r and c, such as those of u > 1 and u < -1, belong to one line, that of u.
- * The zeros of its indicators divide a line into points and intervals. In a cell of the product of all lines no atom
- * changes its sign, and so the condition has one value there, by interval arithmetic (bounds.h).
+ * Indicators that are r u + c with numbers r and c, such as those of u > 1 and u < -1, belong to one line, that of
+ * u. The zeros of its indicators divide a line into points and intervals. In a cell of the product of all lines no
+ * atom changes its sign. So the condition has one value there, by interval arithmetic (bounds.h).
  *
  * A condition with the same value in all cells has one outcome. Cells outside of the bounds of u do not count. A motion
  * need not come to all other cells, so that some conditions with one outcome are not found.
@@ -60,20 +60,20 @@ struct Analysis {
 /* --- Linear forms --- */
 
 static void add_to_form(struct LinearForm *form, Node node, double coefficient) {
-  size_t place = 0;
-  while (place < form->count && form->nodes[place] < node) place++;
-  if (place < form->count && form->nodes[place] == node) {
-    form->coefficients[place] += coefficient;
+  size_t slot = 0;
+  while (slot < form->count && form->nodes[slot] < node) slot++;
+  if (slot < form->count && form->nodes[slot] == node) {
+    form->coefficients[slot] += coefficient;
     return;
   }
   form->nodes = make_room(form->nodes, form->count, sizeof *form->nodes);
   form->coefficients = make_room(form->coefficients, form->count, sizeof *form->coefficients);
-  for (size_t i = form->count; i > place; i--) {
+  for (size_t i = form->count; i > slot; i--) {
     form->nodes[i] = form->nodes[i - 1];
     form->coefficients[i] = form->coefficients[i - 1];
   }
-  form->nodes[place] = node;
-  form->coefficients[place] = coefficient;
+  form->nodes[slot] = node;
+  form->coefficients[slot] = coefficient;
   form->count++;
 }
 

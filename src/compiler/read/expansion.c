@@ -33,7 +33,7 @@ static void expand_children(struct Reader *reader, xmlNodePtr parent);
 
 static void report_index(struct Reader *reader, xmlNodePtr node) {
   char *index = attribute(node, "index");
-  report_at(reader, node, "the index '%s' of <for> is already a name; expected a new one", index);
+  report_at(reader, node, "the index '%s' of <for> is already defined; expected another name", index);
 }
 
 /* True if the bounds are valid and the index is a new name; reports an error otherwise. */

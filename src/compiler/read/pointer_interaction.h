@@ -1,6 +1,6 @@
 /*
- * Pointer interaction of a page: inputs for the position of the pointer and for the grabbed point of a body, and a
- * spring force on each body.
+ * Pointer interaction of a page. Inputs give the position of the pointer and the grabbed point of a body; a spring
+ * force acts on each body.
  */
 #pragma once
 

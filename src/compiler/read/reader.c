@@ -1,12 +1,11 @@
 /*
  * A system is read in five passes over its elements, see enum Pass:
  *
- *   DECLARATIONS  defines constants, and symbols for parameters, inputs, coordinates, states, constraints, contacts
- *                 and frictions, while expansion.c makes the list of elements;
- *   DEFINITIONS   collects the named expressions, which resolution.c then parses in topological order;
- *   POSITIONS     reads bodies, frames, shapes and start values;
- *   EXPRESSIONS   reads energies, forces, constraints, events and outputs, which may use all names;
- *   DRAWING       reads lines that are drawn, in a graph of their own.
+ *   DECLARATIONS defines constants, and symbols for parameters, inputs, coordinates, states, constraints, contacts
+ * and frictions, while expansion.c makes the list of elements. DEFINITIONS collects the named expressions, which
+ * resolution.c then parses in topological order. POSITIONS reads bodies, frames, shapes and start values.
+ * EXPRESSIONS reads energies, forces, constraints, events and outputs, which may use all names. DRAWING reads lines
+ * that are drawn, in a graph of their own.
  *
  * Symbols whose indices depend on counts follow the first pass: modes, accelerations, constraint forces and reactions.
  * Modes that expressions add come later. After EXPRESSIONS switching functions and frictions are completed and the
@@ -73,8 +72,8 @@ static void append_reactions(struct Model *model, struct Scope *scope) {
 }
 
 /*
- * Returns the unit of a constraint's force before its expression is read; unknown if the unit, such as m/s or A, leaves
- * open whether the constraint is one of velocities.
+ * Returns the unit of a constraint's force before its expression is read. It is unknown if the constraint may be
+ * one of velocities, by its unit such as m/s or A.
  */
 static struct Dimension early_force_dimension(const struct Variable *constraint) {
   const double *exponent = constraint->dimension.exponent;
@@ -99,7 +98,7 @@ static void declare_constraint_forces(struct Model *model, struct Scope *scope) 
 static void check_definitions_used(struct Reader *reader) {
   for (size_t i = 0; i < reader->options->definition_count; i++)
     if (!reader->definition_used[i])
-      report_error(reader->diagnostics, 0, "-D %s: there is no <constant> of this name; expected one of the file",
+      report_error(reader->diagnostics, 0, "-D %s: there is no <constant> of this name; expected an existing name",
                    reader->options->definitions[i]);
 }
 

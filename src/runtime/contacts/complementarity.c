@@ -1,10 +1,11 @@
 /*
- * Solves w = M z + q with w >= 0, z >= 0, w^T z = 0 by Lemke's method: complementary pivoting for w = M z + q + 1 z0,
- * from a large z0 at z = 0 down to z0 = 0. Of each pair w_i, z_i one is 0 throughout; the partner of the variable that
- * leaves the basis enters next. Ties of the ratio test are broken lexicographically by the rows of the inverse of the
- * basis, so that in exact arithmetic no basis returns and the path is finite. A pivot costs O(n^2). The path is given
- * up at a secondary ray (no row can leave) or after PIVOTS_A_ROW n pivots. Then it is tried again with a larger
- * tolerance for ties. Reference: Cottle, Pang and Stone, The Linear Complementarity Problem, chapter 4.
+ * Solves w = M z + q with w >= 0, z >= 0, w^T z = 0 by Lemke's method: complementary pivoting for w = M z + q + 1
+ * z0, from a large z0 at z = 0 down to z0 = 0. Of each pair w_i, z_i one is 0 throughout; the partner of the
+ * variable that leaves the basis enters next. Ties of the ratio test are broken lexicographically by the rows of
+ * the inverse of the basis. So in exact arithmetic no basis returns, and the path is finite. A pivot costs O(n^2).
+ * The path is given up at a secondary ray (no row can leave) or after PIVOTS_A_ROW n pivots. Then it is tried again
+ * with a larger tolerance for ties. Reference: Cottle, Pang and Stone, The Linear Complementarity Problem, chapter
+ * 4.
  */
 #include "contacts/complementarity.h"
 

@@ -10,8 +10,8 @@ size_t complementarity_work_count(size_t n);
 
 /*
  * Solves for z[n] by Lemke's method. matrix: M by rows, n x n; M and q should be scaled to a size of 1. Of several
- * solutions it finds the one at the end of Lemke's path from z = 0, which as a rule does not depend on the order of the
- * rows. False, with z = 0, if the path ends without a solution.
+ * solutions it finds the one at the end of Lemke's path from z = 0. As a rule this does not depend on the order of
+ * the rows. False, with z = 0, if the path ends without a solution.
  */
 bool complementarity_solve(size_t n, const double *matrix, const double *q, double *z, double *work);
 

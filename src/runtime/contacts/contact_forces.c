@@ -4,16 +4,16 @@
  *
  *   a = free + S F,   a >= 0,   F >= 0,   F^T a = 0,   S = W_NN - W_NT D mu,
  *
- * where W = J M^-1 J^T is the Delassus matrix of contacts (N) and sliding frictions (T), the diagonal matrix D holds
+ * where W = J M^-1 J^T is the Delassus matrix of contacts (N) and sliding frictions (T). The diagonal matrix D has
  * the signs (in planes the components) of the slip directions, and mu the friction limits by unit contact forces.
- * Contacts with a friction that sticks are left as they are. Without friction S is symmetric and positive semidefinite,
- * and the accelerations are unique. With it there may be no solution or several (Painleve's paradox).
+ * Contacts with a friction that sticks are left as they are. Without friction S is symmetric and positive
+ * semidefinite, and the accelerations are unique. With it there may be no solution or several (Painleve's paradox).
  *
- * The problem is set up after the frictions have their modes, if a friction slides on a contact at rest, or if a
- * contact that its force has opened would close again. If no open contact approaches, the present forces are a
- * solution, and only their uniqueness is examined (resting_forces.c), unless a friction begins to slide: its direction
- * would differ in another solution. Else the solution found sets the contacts. If there is none, or more than one, or
- * existence is unknown, the motion ends with a message.
+ * The problem is set up after the frictions have their modes. It is needed if a friction slides on a contact at
+ * rest, or if a contact that its force has opened would close again. If no open contact approaches, the present
+ * forces are a solution, and only their uniqueness is examined (resting_forces.c). If a friction begins to slide,
+ * its direction would differ in another solution, and the problem is solved. Else the solution found sets the
+ * contacts. If there is none, or more than one, or existence is unknown, the motion ends with a message.
  */
 #include "contacts/contact_forces.h"
 

@@ -69,8 +69,8 @@ bool is_touching(const struct Resolution *resolution, size_t contact);
 bool contact_is_at_rest(const struct Resolution *resolution, size_t contact);
 
 /*
- * True if the bounce of a contact that opens at this rate is smaller than the errors of rounding and of the method, in
- * its height or its duration.
+ * True if a contact that opens at this rate bounces by less than the errors of rounding and of the method, in
+ * height or duration.
  */
 bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate);
 

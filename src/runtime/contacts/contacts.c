@@ -1,13 +1,13 @@
 /*
- * Contacts: impacts, rest and parting. An impact takes the touching contact that closes fastest, together with those as
- * fast within rounding; the other touching contacts are open. Contacts that close because of it have impacts of their
- * own after it, so that a row of touching bodies passes an impulse on (Newton's cradle). After IMPACT_LIMIT impacts of
- * an event all that touch are taken at once, without restitution. If a contact still closes then, bodies are crushed,
- * and the motion ends.
+ * Contacts: impacts, rest and parting. An impact takes the touching contact that closes fastest, together with
+ * those as fast within rounding; the other touching contacts are open. Contacts that close because of it have
+ * impacts of their own after it. So a row of touching bodies passes an impulse on (Newton's cradle). After
+ * IMPACT_LIMIT impacts of an event all that touch are taken at once, without restitution. If a contact still closes
+ * then, bodies are crushed, and the motion ends.
  *
- * act_once() makes one change a round: it opens contacts that were lifted or part, or takes an impact, or closes those
- * that come to rest, or projects out penetrations, or opens the closed contact that pulls most. resolve.c repeats the
- * rounds until none changes anything.
+ * act_once() makes one change a round. It opens contacts that were lifted or part, else takes an impact, else
+ * closes contacts that come to rest. Otherwise it projects out penetrations, or opens the closed contact that pulls
+ * most. resolve.c repeats the rounds until none changes anything.
  *
  * was_opened of a contact is 1 after its force or an event has opened it, -1 after contact_forces.c has closed it, and
  * 0 again after an impact. A contact with a value other than 0 cannot come to rest in this event by itself.
@@ -234,7 +234,7 @@ static void let_stick(struct Resolution *resolution, size_t contact) {
 
 /*
  * True if a touching contact stays with others that come to rest. Rates of a body that comes to lie flat differ by
- * rounding errors, and the last contact does not accelerate by itself, but shares the load. was_opened is ignored: a
+ * rounding errors. The last contact does not accelerate by itself, but shares the load. was_opened is ignored: a
  * contact that pulled before the others came to rest may rest too.
  */
 static bool rests_with_others(const struct Resolution *resolution, size_t contact) {
@@ -351,9 +351,10 @@ static bool part(struct Resolution *resolution) {
 }
 
 /*
- * True if the penetration of an open contact has to be projected out. An importer locates contacts late, and would not
- * see a zero of an indicator that stays negative. At an event this concerns a contact without speed, or one that has
- * just opened and that the projection onto other constraints has left penetrated; it would be located again and again.
+ * True if the penetration of an open contact has to be projected out. An importer locates contacts late, and would
+ * not see a zero of an indicator that stays negative. At an event this concerns a contact without speed. It also
+ * concerns one that has just opened and that the projection onto other constraints has left penetrated. Its event
+ * would be located again and again.
  */
 static bool has_to_lift(const struct Resolution *resolution, size_t contact) {
   size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;

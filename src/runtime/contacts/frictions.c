@@ -1,11 +1,11 @@
 /*
- * Modes of dry friction along lines: 0 if it sticks, else the sign of its velocity. By Coulomb's law a friction sticks
- * while the force of its constraint is within the stiction. It slides while its velocity, or at rest its acceleration,
- * has the sign of its mode. The accelerations for given modes make this a complementarity problem, which is solved by
- * Murty's least-index method: each round switches the first friction that disagrees, and the accelerations are
- * evaluated again. For linear complementarity problems with a P-matrix it ends (Cottle, Pang and Stone, The Linear
- * Complementarity Problem, chapter 4). Beyond FRICTION_FLIP_LIMIT switches of one friction jams.c tries all modes; if
- * that fails too, the motion ends with a message.
+ * Modes of dry friction along lines: 0 if it sticks, else the sign of its velocity. By Coulomb's law a friction
+ * sticks while the force of its constraint is within the stiction. It slides while its velocity, or at rest its
+ * acceleration, has the sign of its mode. The accelerations for given modes make this a complementarity problem,
+ * which is solved by Murty's least-index method. Each round switches the first friction that disagrees, and the
+ * accelerations are evaluated again. For linear complementarity problems with a P-matrix it ends (Cottle, Pang and
+ * Stone, The Linear Complementarity Problem, chapter 4). Beyond FRICTION_FLIP_LIMIT switches of one friction jams.c
+ * tries all modes; if that fails too, the motion ends with a message.
  */
 #include "contacts/frictions.h"
 
@@ -109,9 +109,9 @@ static double mode_without_force(const struct FrictionState *state) {
 }
 
 /*
- * Returns the mode of a friction that passes through 0 because it cannot stop the motion, such as a slider at the dead
- * centre of its crank: its rate is the same while it sticks, and its constraint force is a rounding error. 0 for
- * others.
+ * Returns the mode of a friction that passes through 0 because it cannot stop the motion. An example is a slider at
+ * the dead centre of its crank. Its rate is the same while it sticks, and its constraint force is a rounding error.
+ * 0 for others.
  */
 static double mode_without_hold(const struct FrictionState *state) {
   bool continues = fabs(state->rate) > sticking_rate_share * state->largest_rate,
@@ -158,9 +158,9 @@ static double certainty_of(const struct FrictionState *state) {
 }
 
 /*
- * True if the friction would return to the mode that it has just left, by a larger margin. A friction whose velocity a
- * contact constrains slides without moving if its share of their common load would exceed its limit; its rate is then a
- * rounding error.
+ * True if the friction would return to the mode that it has just left, by a larger margin. A friction whose
+ * velocity a contact constrains slides without moving if its share of their common load would exceed its limit. Its
+ * rate is then a rounding error.
  */
 static bool would_go_back(const struct Resolution *resolution, size_t friction, double mode, double certainty) {
   return resolution->last.friction == friction && resolution->last.mode == mode &&

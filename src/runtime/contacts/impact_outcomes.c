@@ -1,10 +1,10 @@
 /*
- * Enumerates the outcomes of an impact with frictions along lines, as active sets of its complementarity conditions:
- * each contact opens or presses, each friction sticks or slides either way. In each of the 2^contacts 3^frictions
- * combinations, the impulses of pressing contacts and of sticking frictions follow from rates of 0, by elimination; the
- * other impulses follow from Coulomb's law. The combination is an outcome if impulses and rates have the signs that it
- * assumes; a singular one is skipped. If impulses are not unique, one of the solutions has a friction at its limit. The
- * combination in which this friction slides at a rate of 0 finds it.
+ * Enumerates the outcomes of an impact with frictions along lines, as active sets of its complementarity
+ * conditions. Each contact opens or presses, each friction sticks or slides either way. In each of the 2^contacts
+ * 3^frictions combinations, the impulses of pressing contacts and of sticking frictions follow from rates of 0, by
+ * elimination. The other impulses follow from Coulomb's law. The combination is an outcome if impulses and rates
+ * have the signs that it assumes; a singular one is skipped. If impulses are not unique, one of the solutions has a
+ * friction at its limit. The combination in which this friction slides at a rate of 0 finds it.
  */
 #include "contacts/impact_outcomes.h"
 

@@ -4,12 +4,12 @@
  *
  *   p >= 0,   u+ + e u- >= 0,   p (u+ + e u-) = 0.
  *
- * The impulse of a friction is within the limit mu p; it is at the limit, against the velocity, if it slides after the
- * impact, and else what makes it stick. Frictions along lines are split into impulses along and against the velocity,
- * with the sliding speed as a slack. This gives one linear complementarity problem (Anitescu and Potra, Nonlinear
- * Dynamics 14, 1997), which Lemke's method solves. It is regularized and iterated by the proximal point method, so that
- * impulses that are not unique stay small. Frictions in planes have cones, and need find_impulses of struct
- * FrictionLaws instead (planes/cone_impulses.c).
+ * The impulse of a friction is within the limit mu p. If it slides after the impact, the impulse is at the limit
+ * and against the velocity; else it is what sticking requires. Frictions along lines are split into impulses along
+ * and against the velocity, with the sliding speed as a slack. This gives one linear complementarity problem
+ * (Anitescu and Potra, Nonlinear Dynamics 14, 1997), which Lemke's method solves. It is regularized and iterated by
+ * the proximal point method, so that impulses that are not unique stay small. Frictions in planes have cones, and
+ * need find_impulses of struct FrictionLaws instead (planes/cone_impulses.c).
  *
  * Without restitution there is a solution, and it gains no energy. With e it may gain some (Kane's paradox); then all
  * restitutions are multiplied by the largest factor, found by bisection, that gains none. If no impulses are found, the
@@ -44,8 +44,8 @@ static const double differing_share = 1e-8;
 static const double resting_share = 1e-9;
 
 /*
- * Proximal terms, added to the diagonal of the scaled Delassus matrix, in the order in which they are tried: the next
- * is used if Lemke's method fails with the one before because of rounding. Iterations remove their effect.
+ * Proximal terms, added to the diagonal of the scaled Delassus matrix, in the order in which they are tried. The
+ * next is used if Lemke's method fails with the one before because of rounding. Iterations remove their effect.
  */
 static const double regularizations[] = {1e-8, 1e-6, 1e-10, 1e-7};
 

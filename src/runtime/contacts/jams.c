@@ -1,11 +1,11 @@
 /*
- * Finds the modes of frictions at rest by enumeration. The friction of a worm gear follows from the size of the tooth
- * force, which follows from the friction: a complementarity problem whose matrix need not be a P-matrix, so that
- * switching one mode after another may cycle (Painleve's paradox). This search is made if they do, once an event
- * resolution. It tries all combinations of the modes in question: each friction at rest sticks or slides either way,
- * each branch that has switched or depends on forces has either sign. Combinations with equal accelerations are one
- * motion. The search ends at the second motion, and needs one evaluation of the accelerations for each of at most
- * MOST_COMBINATIONS combinations.
+ * Finds the modes of frictions at rest by enumeration. The friction of a worm gear follows from the size of the
+ * tooth force, which follows from the friction. The matrix of this complementarity problem need not be a P-matrix,
+ * so that switching one mode after another may cycle (Painleve's paradox). This search is made if they do, once an
+ * event resolution. It tries all combinations of the modes in question. Each friction at rest sticks or slides
+ * either way; each branch that has switched or depends on forces has either sign. Combinations with equal
+ * accelerations are one motion. The search ends at the second motion, and needs one evaluation of the accelerations
+ * for each of at most MOST_COMBINATIONS combinations.
  */
 #include "contacts/jams.h"
 

@@ -1,10 +1,10 @@
 /*
- * Closes redundant contacts at rest. A body on more contacts than it needs rests on any sufficient set of them, and the
- * set that an event leaves closed depends on the order in which contacts closed and opened. To make the forces depend
- * only on the load, all that touch at rest are closed; the equations of motion then have the constraint forces of
- * least norm. Contacts among them that pull, or carry nothing, are opened one by one, the most negative force first (an
- * active set method). It ends since each round opens one. If a closed contact still pulls, the modes stay as they were.
- * This is tried once an event resolution, after contact_forces.c.
+ * Closes redundant contacts at rest. A body on more contacts than it needs rests on any sufficient set of them. The
+ * set that an event leaves closed depends on the order in which contacts closed and opened. To make the forces
+ * depend only on the load, all that touch at rest are closed. The equations of motion then have the constraint
+ * forces of least norm. Contacts among them that pull, or carry nothing, are opened one by one, the most negative
+ * force first (an active set method). It ends since each round opens one. If a closed contact still pulls, the
+ * modes stay as they were. This is tried once an event resolution, after contact_forces.c.
  */
 #include "contacts/load_shares.h"
 

@@ -1,10 +1,10 @@
 /*
- * Solves a = free + S F, a >= 0, F >= 0, F^T a = 0, in groups of contacts that S couples. If the symmetric part of S is
- * positive definite, which Cholesky's factorization shows, the solution exists and is unique (Cottle, Pang and Stone,
- * The Linear Complementarity Problem, chapter 3). Else, in groups of n <= COMBINED_LIMIT contacts, all 2^n active sets
- * are tried: F of an active set follows from a = 0 on it, by elimination, at a cost of O(2^n n^3). Active sets with a
- * singular matrix are skipped. Solutions with equal accelerations count as one motion. In larger groups Lemke's method
- * finds one solution, if any; whether there are others stays unknown.
+ * Solves a = free + S F, a >= 0, F >= 0, F^T a = 0, in groups of contacts that S couples. Cholesky's factorization
+ * shows whether the symmetric part of S is positive definite. If so, the solution exists and is unique (Cottle,
+ * Pang and Stone, The Linear Complementarity Problem, chapter 3). Else all 2^n active sets are tried, in groups of
+ * n <= COMBINED_LIMIT contacts. F of an active set follows from a = 0 on it, by elimination, at a cost of O(2^n
+ * n^3). Active sets with a singular matrix are skipped. Solutions with equal accelerations count as one motion. In
+ * larger groups Lemke's method finds one solution, if any; whether there are others stays unknown.
  */
 #include "contacts/resting_forces.h"
 

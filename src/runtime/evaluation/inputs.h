@@ -14,9 +14,10 @@ void evaluate_inputs(const struct Instance *instance, double time, double *input
 void evaluate_advance_inputs(struct Instance *instance, double time);
 
 /*
- * Keeps the inputs' polynomials within min and max over a step of this length: one that leaves them is replaced by the
- * straight line to its value at the end, or to the limit that this value exceeds. An input that prescribes a motion
- * stays, as its derivatives are velocities of bodies: returns false after logging one that leaves its limits.
+ * Keeps the inputs' polynomials within min and max over a step of this length. One that leaves them is replaced by
+ * the straight line to its value at the end, or to the limit that this value exceeds. An input that prescribes a
+ * motion stays, as its derivatives are velocities of bodies: returns false after logging one that leaves its
+ * limits.
  */
 bool limit_inputs(struct Instance *instance, double length);
 

@@ -23,13 +23,13 @@ static double sign_with_error_bound(double value, double error_bound) {
 }
 
 /* True if the indicator is the velocity of a friction with prescribed motion, which moved when the event began. */
-static bool is_driven(const struct Resolution *resolution, size_t branch) {
+static bool is_prescribed(const struct Resolution *resolution, size_t branch) {
   const struct SwitchTable *switches = resolution->switches;
-  bool is_driven = false;
+  bool is_prescribed = false;
   for (size_t i = 0; i < switches->friction_count; i++)
-    is_driven |= switches->frictions[i].is_given && switches->frictions[i].mode == switches->branches[branch].mode &&
-                 resolution->began[i] != 0.0;
-  return is_driven;
+    is_prescribed |= switches->frictions[i].is_given &&
+                     switches->frictions[i].mode == switches->branches[branch].mode && resolution->began[i] != 0.0;
+  return is_prescribed;
 }
 
 /*
@@ -38,7 +38,7 @@ static bool is_driven(const struct Resolution *resolution, size_t branch) {
  */
 static double error_bound_of_branch(const struct Resolution *resolution, size_t branch) {
   double error_bound = resolution_error_bound(resolution, branch, branch_rate_slot(resolution->switches, branch));
-  bool is_rough = is_hit(resolution, branch) || is_driven(resolution, branch);
+  bool is_rough = is_hit(resolution, branch) || is_prescribed(resolution, branch);
   return error_bound * (is_rough ? FLOOR_IN_ERROR_BOUND : 1.0);
 }
 
@@ -57,32 +57,32 @@ static bool passes(const struct Resolution *resolution, size_t branch) {
 }
 
 /*
- * True if an indicator at 0 without a rate stays there: a friction has begun to stick in this event, a velocity in it
- * has come to rest, or a prescribed motion.
+ * True if an indicator at 0 without a rate stays there. In this event a friction has begun to stick, or a velocity
+ * or a prescribed motion in the indicator has come to rest.
  */
 static bool stays_at_zero(const struct Resolution *resolution, size_t branch) {
   const struct SwitchTable *switches = resolution->switches;
-  bool rests = is_driven(resolution, branch) || (resolution->has_rested && resolution->value[branch] == 0.0);
+  bool rests = is_prescribed(resolution, branch) || (resolution->has_rested && resolution->value[branch] == 0.0);
   for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_last_sign; i++)
     rests |= resolution->began[i] != 0.0 && friction_holds(resolution->instance, i);
   return rests;
 }
 
 /*
- * Returns the rounding error bound of the rate of an indicator at 0. After a jump, even the smallest rate counts: it is
- * not left by rounding. A velocity that leaves rest as a friction slips begins with the difference of two equal forces,
- * and constraints leave that of two equal accelerations where a drive stops.
+ * Returns the rounding error bound of the rate of an indicator at 0. After a jump, even the smallest rate counts:
+ * it is not left by rounding. A velocity that leaves rest as a friction slips begins with the difference of two
+ * equal forces. Where a prescribed motion stops, constraints leave the difference of two equal accelerations.
  */
 static double error_bound_of_rate(const struct Resolution *resolution, size_t branch, double error_bound) {
   bool leaves_rest = resolution->has_left_rest || (resolution->is_departure && is_hit(resolution, branch));
   if (resolution->jumped) return 0.0;
-  double noise = leaves_rest || is_driven(resolution, branch) ? error_bound / shortest_slip : 0.0;
-  return resolution->error_bound[branch_rate_slot(resolution->switches, branch)] + noise;
+  double error_at_rest = leaves_rest || is_prescribed(resolution, branch) ? error_bound / shortest_slip : 0.0;
+  return resolution->error_bound[branch_rate_slot(resolution->switches, branch)] + error_at_rest;
 }
 
 /*
- * True if the piece of the mode has no value here: rounding has left the indicator on the other side of 0, where the
- * piece, such as a root, does not exist.
+ * True if the piece of the mode has no value here. Rounding has left the indicator on the other side of 0, where
+ * the piece, such as a root, does not exist.
  */
 static bool has_no_value(const struct Resolution *resolution, size_t branch, double mode) {
   double rate = resolution->value[branch_rate_slot(resolution->switches, branch)];
@@ -102,8 +102,8 @@ static double sign_of_branch(const struct Resolution *resolution, size_t branch)
   if (sign != 0.0) return sign;
   if (passes(resolution, branch)) return mode == 0.0 ? resolution->instance->departure : -mode;
   /*
-   * Values that were set to 0, without a rate, are at rest, whatever their sign was; but not if they have a rate there,
-   * as those of a root of rounding errors.
+   * Values that were set to 0, without a rate, are at rest, whatever their sign was. With a rate, as of a root of
+   * rounding errors, they are not.
    */
   bool was_set = (resolution->jumped || resolution->occasion != AT_EVENT) && resolution->flips[branch] < 2.0;
   return was_set || stays_at_zero(resolution, branch) ? 0.0 : mode;

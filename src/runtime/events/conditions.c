@@ -1,8 +1,9 @@
 /*
- * Triggers of <event> and <sample> elements. condition[i] of the resolution holds the value of an event's condition
- * before the last change: positive if a condition held, the last nonzero sign of an expression. An event happens if its
- * condition becomes positive, or if the sign of its expression changes in its direction. All events of a round happen
- * with the values before it, so that their order has no effect; two that assign the same variable are an error.
+ * Triggers of <event> and <sample> elements. condition[i] of the resolution is the value of an event's condition
+ * before the last change. It is positive if a condition was true; of an expression it is the last nonzero sign. An
+ * event happens if its condition becomes positive, or if the sign of its expression changes in its direction. All
+ * events of a round happen with the values before it, so that their order has no effect. Two that assign the same
+ * variable are an error.
  */
 #include "events/conditions.h"
 

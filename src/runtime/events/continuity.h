@@ -20,8 +20,8 @@ void continuity_note(struct Resolution *resolution, size_t branch);
 const char *continuity_check(struct Resolution *resolution);
 
 /*
- * Reports Zeno behaviour at the corner of a gap in model exchange: errors of an integrator move a body that rests in
- * the corner from one piece to the other. Returns NULL, or the reason.
+ * Reports Zeno behaviour at the corner of a gap in model exchange. There errors of an integrator move a body that
+ * rests in the corner from one piece to the other. Returns NULL, or the reason.
  */
 const char *continuity_check_corner(struct Resolution *resolution);
 

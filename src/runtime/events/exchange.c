@@ -118,10 +118,10 @@ bool exchange_is_due(struct Instance *instance) {
 }
 
 /*
- * Events that wait for crossings in both directions. An importer is beyond the zero of the expression when it asks. If
- * the event turned the motion back there, it would cross the zero again. So the state goes back to the zero by its
- * Taylor polynomial of second order, passes the event as in co-simulation, and goes forward by the same time. The
- * errors are of third order in this time.
+ * Events that wait for crossings in both directions. An importer is beyond the zero of the expression when it asks.
+ * If the event turned the motion back there, it would cross the zero again. So the state goes back to the zero by
+ * its Taylor polynomial of second order. It passes the event as in co-simulation, and goes forward by the same
+ * time. The errors are of third order in this time.
  */
 
 /* True if an event waits for both directions, and the importer has integrated to the present state. */

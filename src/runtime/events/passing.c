@@ -1,8 +1,9 @@
 /*
- * Events in a communication step. After each solver step, events_pass() searches it for the first event, interval by
- * interval (search_interval.c, search.c). The first interval is a little longer than the time between the last two
- * events, and each next one is twice as long: a solver step may reach far beyond the next event. The state at the event
- * comes from the dense output. resolve() finds the modes and the state after it, and the solver restarts there.
+ * Events in a communication step. After each solver step, events_pass() searches it for the first event, interval
+ * by interval (search_interval.c, search.c). The first interval is a little longer than the time between the last
+ * two events, and each next one is twice as long. A solver step may reach far beyond the next event. The state at
+ * the event comes from the dense output. resolve() finds the modes and the state after it, and the solver restarts
+ * there.
  *
  * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding
  * stop the motion. If zeros cannot be separated, the solver restarts with steps shorter by NEARER, at most NEARER_LIMIT

@@ -109,8 +109,8 @@ struct FrictionLaws {
   /* Lets the friction in a plane slide or stick; NULL without any. */
   void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
   /*
-   * Finds the contact impulses with Coulomb friction in planes, from the rates before the impact, such that the rates
-   * after it fulfil the complementarity conditions of impacts.c. False if none are found. NULL without frictions in
+   * Finds the contact impulses with Coulomb friction in planes, from the rates before the impact. The rates after
+   * it fulfil the complementarity conditions of impacts.c. False if none are found. NULL without frictions in
    * planes.
    */
   bool (*find_impulses)(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,

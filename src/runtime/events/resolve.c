@@ -6,8 +6,8 @@
  * and so are more than ROUND_LIMIT rounds. A round costs a few evaluations of the accelerations, which also bound their
  * rounding errors.
  *
- * Then velocities are projected onto the constraints, and the result is checked: energies and positions must not jump
- * where no event sets them, and contacts and frictions must obey their laws.
+ * Then velocities are projected onto the constraints, and the result is checked. Energies and positions must not
+ * jump where no event sets them, and contacts and frictions must obey their laws.
  */
 #include "events/resolve.h"
 

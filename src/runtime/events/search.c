@@ -4,11 +4,11 @@
  * Mathematics with Applications 39, 2000, describe the problem).
  *
  * f(t) = s_i g_i(t) - floor is sampled at the nine nodes of its Chebyshev polynomial of degree 8. The polynomial's
- * coefficients bound it over the whole interval, not only at samples (search_judge()). It has no zero if c_0 exceeds
- * the sum of the other |c_k|. It has at most one falling zero if the same test on its derivative shows that it falls
- * throughout, or if f is not negative at first and concave. The last two coefficients estimate the interpolation error,
- * which must be small and is allowed for. Otherwise the interval is halved, with new samples. So pairs of close zeros,
- * and zeros at the very start, are found with any solver.
+ * coefficients bound it over the whole interval, not only at samples (search_judge()). It has no zero if c_0
+ * exceeds the sum of the other |c_k|. It has at most one falling zero if the same test on its derivative shows that
+ * it falls throughout. The same holds if f is not negative at first and concave. The last two coefficients estimate
+ * the interpolation error, which must be small and is allowed for. Otherwise the interval is halved, with new
+ * samples. So pairs of close zeros, and zeros at the very start, are found with any solver.
  *
  * search_interval.h makes sure that the interval is so short that no function in the indicators can hide between
  * samples. So an event can be missed only within rounding, or if the estimate of the interpolation error fails.
@@ -188,10 +188,10 @@ static void narrow_fall(struct Search *search, size_t indicator, double sign, co
 }
 
 /*
- * Locates the fall of f through 0 between before, where it is not negative, and behind, by the Illinois method with a
- * bisection at every third step. Returns the neighbouring time with the smaller value. Branches and forces get the
- * later one: the next piece of a function exists there, and a contact that opens, or a friction that slips, then moves
- * in its own direction.
+ * Locates the fall of f through 0 between before, where it is not negative, and behind, by the Illinois method with
+ * a bisection at every third step. Returns the neighbouring time with the smaller value. Branches and forces get
+ * the later one. The next piece of a function exists there, and a contact that opens, or a friction that slips,
+ * then moves in its own direction.
  */
 static double refine(struct Search *search, size_t indicator, double sign, struct Sample before, struct Sample behind) {
   double weight_before = 1.0, weight_behind = 1.0;
@@ -229,8 +229,8 @@ static double refine_fall(struct Search *search, size_t indicator, double sign, 
 static double first_fall(struct Search *search, size_t indicator, double sign, double from, double to, int depth);
 
 /*
- * Returns the first time up to end at which f falls below 0, from its values at the nodes of an interval to end or
- * beyond; INFINITY if there is none.
+ * Returns the first time up to end at which f falls below 0; INFINITY if there is none. Uses its values at the
+ * nodes of an interval to end or beyond.
  */
 static double first_fall_in(struct Search *search, size_t indicator, double sign, const double *f, double from,
                             double to, double end, int depth) {
@@ -333,9 +333,9 @@ static bool is_of_sliding(const struct Search *search, size_t indicator) {
 }
 
 /*
- * Returns the value to which an indicator may fall without an event, from its value at the start: an event, or the
- * method, may have left it below 0. The method's errors count for a velocity that begins to slide and for a gap that
- * lifts.
+ * Returns the value to which an indicator may fall without an event, from its value at the start. An event, or the
+ * method, may have left it below 0. The method's errors count for a velocity that begins to slide and for a gap
+ * that lifts.
  */
 static double floor_of(const struct Search *search, size_t indicator, double start, const size_t *lifted) {
   double error_bound = FLOOR_IN_ERROR_BOUND * search->error_bound[indicator], error = 0.0;

@@ -2,9 +2,10 @@
  * Intervals of the search for events. A hill such as exp(-(x/w)^2) may be flat where an interval begins, and lie
  * between its samples. So an interval must be short enough for every elementary function in the indicators.
  *
- * The states at the Chebyshev nodes of the interval, by the dense output of any solver, give polynomials u of degree 8
- * in the time from its middle (L. N. Trefethen: Approximation Theory and Approximation Practice, 2013). Forces and
- * accelerations in the indicators are expanded likewise. An interval of half length h is short enough if
+ * The dense output of any solver gives the states at the Chebyshev nodes of the interval. They determine
+ * polynomials u of degree 8 in the time from its middle (L. N. Trefethen: Approximation Theory and Approximation
+ * Practice, 2013). Forces and accelerations in the indicators are expanded likewise. An interval of half length h
+ * is short enough if
  *
  *   sum over k >= 1 of |u_k| h^k <= c
  *

@@ -4,10 +4,10 @@
  *   instantiated -> initialization mode -> event mode <-> continuous-time mode -> terminated      model exchange
  *   instantiated -> initialization mode -> step complete or failed <-> event mode -> terminated   co-simulation
  *
- * Co-simulation has event mode in FMI 3.0, if the importer uses it, and intermediate update mode inside a step. Each
- * function belongs to a class, enum FunctionClass; permitted[] gives the kinds of instances and the phases in which
- * functions of a class may be called. Every function asks enter() first. A call in another phase is an error: the
- * instance goes to PHASE_ERROR, where it can be read, reset or freed.
+ * Co-simulation has event mode in FMI 3.0, if the importer uses it, and intermediate update mode inside a step.
+ * Each function belongs to a class, enum FunctionClass. permitted[] gives the kinds of instances and the phases in
+ * which functions of a class may be called. Every function asks enter() first. A call in another phase is an error:
+ * the instance goes to PHASE_ERROR, where it can be read, reset or freed.
  */
 #include "fmi/life_cycle.h"
 

@@ -12,8 +12,8 @@
 #include "stepping/reading.h"
 
 /*
- * Sets the time, which may go back only within the last step of the importer: not beyond the second last completed
- * step or the last event (FMI 2.0.4, section 3.2.1; FMI 3.0.2, section 3.2.1).
+ * Sets the time, which may go back only within the last step of the importer. It must not go beyond the second last
+ * completed step or the last event (FMI 2.0.4, section 3.2.1; FMI 3.0.2, section 3.2.1).
  */
 enum Status exchange_set_time(struct Instance *instance, double time) {
   double start = instance->fmu_state->start_time, earliest = instance->fmu_state->last_step.start;

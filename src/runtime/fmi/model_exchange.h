@@ -25,8 +25,9 @@ enum Status exchange_enter_event_mode(struct Instance *instance);
 bool exchange_is_event_due(struct Instance *instance);
 
 /*
- * Enters continuous-time mode, or step mode in co-simulation. An error if the discrete states were not updated since
- * event mode began, or since a value was set by which an event is due: the event iteration has not converged (FMI
+ * Enters continuous-time mode, or step mode in co-simulation. An error if the discrete states were not updated
+ * since event mode began, or since a value was set by which an event is due. The event iteration has then not
+ * converged (FMI
  * 2.0.4, section 3.2.2; FMI 3.0.2, section 2.3.5).
  */
 enum Status exchange_leave_event_mode(struct Instance *instance);

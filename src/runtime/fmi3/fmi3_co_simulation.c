@@ -57,9 +57,9 @@ static void observe(struct FmiComponent *component) {
 }
 
 /*
- * True if the importer must enter event mode at the end of the step. An importer without early return sees events only
- * at the end (FMI 3.0.2, section 4.2.1): one that is due there, or one inside the step, which the FMU has handled
- * and after which discrete variables differ.
+ * True if the importer must enter event mode at the end of the step. An importer without early return sees events
+ * only at the end (FMI 3.0.2, section 4.2.1). Such an event is due there, or it was inside the step: the FMU has
+ * handled it, and discrete variables differ.
  */
 static bool needs_event_mode(struct Instance *instance, int64_t events_before) {
   if (instance->fmu_state->waiting_event != 0) return true;

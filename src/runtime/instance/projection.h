@@ -15,8 +15,8 @@ struct Projection {
   /* Returns the change by project() at the instance's state, which stays as it is. */
   double (*drift)(struct Instance *instance, double time);
   /*
-   * Returns the instance's state after project(), valid until the next projection; NULL if that fails, or if the state
-   * fulfils the constraints up to 1e-9 of the scales.
+   * Returns the instance's state after project(), valid until the next projection. It is NULL if that fails, or if
+   * the state fulfils the constraints up to 1e-9 of the scales.
    */
   const double *(*nearest)(struct Instance *instance, double time);
   /* True if the last project() or drift() has found redundant constraints. */
@@ -37,8 +37,8 @@ struct Projection {
    */
   size_t (*violated_constraint)(struct Instance *instance, double time);
   /*
-   * Returns the name of the constraint whose row of the Jacobian is closest to singular at a state, as at the limit of
-   * a mechanism; NULL if unknown.
+   * Returns the name of the constraint whose row of the Jacobian is closest to singular, as at the limit of a
+   * mechanism; NULL if unknown.
    */
   const char *(*weakest)(struct Instance *instance, double time, const double *state);
 };

@@ -11,10 +11,10 @@
  * A^-1, z = V w, they need one real and (s - 1) / 2 complex linear systems of the system's size (radau.h). They begin
  * with the polynomial of the last step, and end by the estimated contraction (solve_stages()).
  *
- * The error estimate is that of an embedded formula of order s with the additional node 0, filtered by (mu - J)^-1, so
- * that it stays bounded for stiff parts. The step follows from it by Gustafsson's predictive controller. The order
- * follows from the contraction, as in the paper of 1999 (choose_method()). A failed attempt shortens the step to 0.9 of
- * it or less; the loop ends after ATTEMPT_LIMIT attempts or at the resolution of time.
+ * The error estimate is that of an embedded formula of order s with the additional node 0. The filter (mu - J)^-1
+ * keeps it bounded for stiff parts. The step follows from it by Gustafsson's predictive controller. The order
+ * follows from the contraction, as in the paper of 1999 (choose_method()). A failed attempt shortens the step to
+ * 0.9 of it or less; the loop ends after ATTEMPT_LIMIT attempts or at the resolution of time.
  *
  * A step costs one Jacobian, (s + 1) / 2 factorizations per attempt and s evaluations per iteration. The snapshot holds
  * all that determines a step: its start, the stages, and the numbers of the controllers.

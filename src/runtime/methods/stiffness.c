@@ -40,9 +40,9 @@ static double multiple_for_fast(struct FastModes fast, int order, double toleran
 }
 
 /*
- * Returns this multiple for the slow motion. The ratio by which its terms fall follows from the terms that exceed those
- * of the fast modes. If the second term does not, the ratio lies between the first term and the bound that the fast
- * modes set: their geometric mean is taken.
+ * Returns this multiple for the slow motion. The ratio by which its terms fall follows from the terms that exceed
+ * those of the fast modes. If the second term does not, the ratio lies between the first term and the bound that
+ * the fast modes set. Their geometric mean is taken.
  */
 static double multiple_for_slow(const struct Taylor *taylor, struct FastModes fast, int order, double tolerance) {
   enum { OUTSTANDING = 4 };

@@ -1,8 +1,9 @@
 /*
  * Step size of the Taylor method, in three parts.
  *
- * 1. Prediction (A. Jorba, M. Zou, 2005, section 3). With the norms |x_j| in units of the state's scales, the radius of
- * convergence is about r = min over j = p - 1, p of |x_j|^(-1/j), and the step is r * 2^(-margin) (taylor_rule.h).
+ * 1. Prediction (A. Jorba, M. Zou, 2005, section 3). With the norms |x_j| in units of the state's scales, the
+ *    radius of convergence is about r = min over j = p - 1, p of |x_j|^(-1/j). The step is r * 2^(-margin)
+ *    (taylor_rule.h).
  *
  * 2. Bound. The last coefficients may vanish by symmetry, or because a function such as exp or tanh is flat at the
  * origin. series_limit.h bounds the step so that no elementary function in the equations can hide a change.
@@ -23,8 +24,8 @@
 #include "evaluation/inputs.h"
 
 /*
- * Returns the change of state variable i from the origin to s after it, with the same bits as taylor_change(), and its
- * time derivative at s by Horner's rule alongside.
+ * Returns the change of state variable i from the origin to s after it, with the same bits as taylor_change().
+ * Horner's rule gives its time derivative at s alongside.
  */
 static double change_and_rate(const struct Taylor *taylor, size_t i, double s, double *rate) {
   const double *x = taylor->x[i], square = s * s;
@@ -83,8 +84,8 @@ static double rough_power_of_two(double x) {
 }
 
 /*
- * Returns the predicted step from the last two orders that are not both 0; INFINITY if the upper half of the orders
- * vanishes, 0 if a coefficient is not finite.
+ * Returns the predicted step from the last two orders that are not both 0. It is INFINITY if the upper half of the
+ * orders vanishes, and 0 if a coefficient is not finite.
  */
 static double predicted_step(const struct Taylor *taylor) {
   int64_t order = taylor->saved->order, lowest = order / 2;
@@ -204,8 +205,8 @@ static void use_euler_step(const struct Taylor *taylor) {
 }
 
 /*
- * Returns a step across a point at which a root, a kink or a jump has no series; 0 if a step of the length that has a
- * series will do.
+ * Returns a step across a point at which a root, a kink or a jump has no series. It is 0 if a step of the length
+ * that has a series will do.
  *
  * Such a point is approached by ever shorter steps, and crossed by one that moves the state by crossing_share of its
  * scale. So two such points are not mistaken for one. The defect in this step must be allowed by the tolerance, or be

@@ -4,11 +4,12 @@
  *   contact:   u >= 0,  p >= 0,  u p = 0,
  *   friction:  |p| <= mu p_contact,  and  p = -mu p_contact u / |u|  where u is not 0.
  *
- * Projected block Gauss-Seidel sweeps (each impulse in turn is projected with the others fixed) come near a solution;
- * from there a semismooth Newton method is tried (cone_newton.c). A trial that does not converge continues the sweeps,
- * LAW_SWEEPS more than the last time, underrelaxed in the second half. The best trial counts. It ends when the residual
- * is small enough, after LAW_TRIALS at the latest. A sweep costs O(n^2). With friction convergence is not guaranteed:
- * the search fails if the best residual is larger than law_roughly_holds and than the rounding error of the rates.
+ * Projected block Gauss-Seidel sweeps come near a solution: each impulse in turn is projected with the others
+ * fixed. From there a semismooth Newton method is tried (cone_newton.c). A trial that does not converge continues
+ * the sweeps, LAW_SWEEPS more than the last time, underrelaxed in the second half. The best trial counts. It ends
+ * when the residual is small enough, after LAW_TRIALS at the latest. A sweep costs O(n^2). With friction
+ * convergence is not guaranteed: the search fails if the best residual is larger than law_roughly_holds and than
+ * the rounding error of the rates.
  *
  * For plane_forces.c the same conditions hold between forces and accelerations at rest.
  */

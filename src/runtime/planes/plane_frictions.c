@@ -5,9 +5,9 @@
  * stiction it slips along a direction d (plane_starts.c), with the force against d, until the velocity moves away from
  * d; then it slides again. Sticking frictions share a load that does not determine their forces (plane_loads.c).
  *
- * Each round makes one change, or one to each of several frictions. If one switches more than TOGETHER_LIMIT times, or
- * stops or directions are not found, all forces at rest are solved for at once (plane_forces.c), once an event
- * resolution. Beyond FRICTION_FLIP_LIMIT switches the motion ends with a message.
+ * Each round makes one change, or one to each of several frictions. A friction may switch more than TOGETHER_LIMIT
+ * times, or stops or directions may not be found. Then all forces at rest are solved for at once (plane_forces.c),
+ * at most once in an event resolution. Beyond FRICTION_FLIP_LIMIT switches the motion ends with a message.
  */
 #include <math.h>
 #include <string.h>

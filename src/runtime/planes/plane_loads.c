@@ -1,9 +1,9 @@
 /*
- * Distributes the load of sticking frictions in planes. A body that stands on more points than it needs sticks if any
- * forces f with G f = load, |f_i| <= stiction_i, exist; those of least norm, which the equations of motion yield, may
- * violate the limits. G holds the generalized forces of unit forces, columns of J^T; forces in its null space balance
- * each other along all coordinates, so that the contact forces stay the same. The frictions that G couples with the one
- * that exceeds its limit take part. shared_loads.c finds the forces.
+ * Distributes the load of sticking frictions in planes. A body that stands on more points than it needs sticks if
+ * any forces f with G f = load, |f_i| <= stiction_i, exist. Those of least norm, which the equations of motion
+ * yield, may violate the limits. G has the generalized forces of unit forces, columns of J^T. Forces in its null
+ * space balance each other along all coordinates, so that the contact forces stay the same. The frictions that G
+ * couples with the one that exceeds its limit take part. shared_loads.c finds the forces.
  */
 #include "planes/plane_loads.h"
 
@@ -120,8 +120,9 @@ static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad 
 }
 
 /*
- * Weak frictions, whose contacts are about to open, get friction forces without constraints if others constrain their
- * velocities: constraints would take too much of a changing load again and again. False if that cannot be determined.
+ * Weak frictions are those whose contacts are about to open. They get friction forces without constraints if others
+ * constrain their velocities, since constraints would take too much of a changing load again and again. False if
+ * that cannot be determined.
  */
 static bool let_weak_push(const struct PlaneLoads *loads) {
   struct Resolution *resolution = loads->resolution;

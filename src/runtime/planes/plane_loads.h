@@ -5,9 +5,9 @@
 #include "planes/plane_state.h"
 
 /*
- * Handles a sticking friction that exceeds its stiction: frictions that can take its load share it within their limits,
- * or those at their limits begin to slide. False if it has no others, if every distribution exceeds the limits, or
- * after SHARE_LIMIT switches of it in an event.
+ * Handles a sticking friction that exceeds its stiction. Frictions that can take its load share it within their
+ * limits, or those at their limits begin to slide. False if it has no others, if every distribution exceeds the
+ * limits, or after SHARE_LIMIT switches of it in an event.
  */
 bool plane_loads_share(struct Resolution *resolution, size_t plane);
 

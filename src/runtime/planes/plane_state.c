@@ -17,13 +17,13 @@ static const double slower_share = 0.1;
 static const double least_part = 1e-9;
 
 /*
- * Values of the mode upper. never: no velocity reaches it. has_deviated: the mode may change as the velocity turns by
- * 90 degrees from the slip direction at which it began, so that an importer that steps over rest does not miss it.
+ * Values of the mode upper. never: no velocity reaches it. has_deviated: the mode may change as the velocity turns
+ * by 90 degrees from its first slip direction. So an importer that steps over rest does not miss it.
  */
 static const double never = -1e300, has_deviated = -1e-300;
 /*
- * A velocity that has turned back, without an impact, has passed rest if its component across the slip direction is
- * less than this fraction of the component against it.
+ * A velocity that has turned back without an impact may have passed rest. It has if its component across the slip
+ * direction is less than this fraction of the component against it.
  */
 static const double slope_back = 0.5;
 

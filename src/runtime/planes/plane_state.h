@@ -25,8 +25,8 @@ struct PlaneState {
   double force[2], needed;          /* force that it carries if it sticks, and its size */
   double lower, upper;              /* speeds at which the mode may change; upper < 0: never, or a bound on ahead */
   /*
-   * Speeds that count as small, and as 0, within the errors of the method. At a small speed the friction is brought to
-   * rest at once if it can stick; the error is of the second order in the speed.
+   * Speeds that count as small, and as 0, within the errors of the method. At a small speed the friction is brought
+   * to rest at once if it can stick. The error is of the second order in the speed.
    */
   double small, none;
   bool has_slowed;   /* the zero of its first indicator was located: lower speed, or stiction */

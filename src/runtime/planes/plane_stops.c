@@ -1,9 +1,9 @@
 /*
- * Brings frictions in planes to rest together, by an active set method. Frictions of one body, such as those of a disk
- * on many points, slow down and stop at the same time, so that none can stick by itself. All slow ones stick for a
+ * Brings frictions in planes to rest together, by an active set method. Frictions of one body, such as those of a
+ * disk on many points, slow down and stop at the same time. None can stick by itself. All slow ones stick for a
  * trial. While one exceeds its stiction, the one that exceeds it most shares its load or slides again. This ends
- * because sliding frictions are not tried again, and sharing is limited (plane_loads.c). Each round needs an evaluation
- * of the accelerations.
+ * because sliding frictions are not tried again, and sharing is limited (plane_loads.c). Each round needs an
+ * evaluation of the accelerations.
  */
 #include "planes/plane_stops.h"
 

@@ -1,11 +1,12 @@
 /*
- * Finds the velocities at rest. With the rows J of all active constraints J v = b, a velocity v_i rests if e_i is in
- * the row space of J and the right sides give it the value 0. The projection of velocities onto the constraints, v -
- * M^-1 J^T (J M^-1 J^T)^+ (J v - b), decides that without further algebra: it takes v_i from any v to 0. So random
- * velocities are projected, once at the present point and once at a point nearby, which the motion may reach without an
- * event: coordinates moved along the projected velocities, another time, other states, and inputs that may vary.
- * Velocities that the coordinates, time or inputs make 0 only for an instant are not at rest. A decision costs two
- * projections. It is correct with probability 1, up to rounding errors.
+ * Finds the velocities at rest. Let J have the rows of all active constraints J v = b. A velocity v_i rests if e_i
+ * is in the row space of J and the right sides give it the value 0. The projection of velocities onto the
+ * constraints, v - M^-1 J^T (J M^-1 J^T)^+ (J v - b), decides that without further algebra: it takes v_i from any v
+ * to 0. So random velocities are projected, once at the present point and once at a point nearby, which the motion
+ * may reach without an event. It has coordinates moved along the projected velocities, another time, other states,
+ * and other values of inputs that may vary. Velocities that the coordinates, time or inputs make 0 only for an
+ * instant are not at rest. A decision costs two projections. It is correct with probability 1, up to rounding
+ * errors.
  *
  * The indicator of a branch that is linear in several velocities, sum_i a_i v_i + r, has the value r if the sum rests.
  * The same projections decide that: they take a sum at rest to 0.
@@ -66,7 +67,7 @@ static struct Probe probe_here(struct Resolution *resolution) {
 }
 
 /*
- * True if the input may change without an event: importers of model exchange may set it at any time, and inputs in
+ * True if the input may change without an event. Importers of model exchange may set it at any time, and inputs in
  * constraints become polynomials at the start of a communication step. Others change by events.
  */
 static bool may_vary(const struct Instance *instance, size_t input) {
@@ -108,10 +109,10 @@ static bool is_small(const struct Resolution *resolution, size_t number) {
 }
 
 /* Marks prescribed velocities that accelerate; NULL for accelerations that do not exist. */
-static void find_driven(struct Resolution *resolution, const double *acceleration) {
+static void mark_accelerating(struct Resolution *resolution, const double *acceleration) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->resting_count; i++)
-    if (switches->resting[i].kind == RESTING_DRIVE &&
+    if (switches->resting[i].kind == RESTING_PRESCRIBED &&
         (acceleration == NULL || acceleration[switches->resting[i].index] != 0.0))
       resolution->moves[i] = VELOCITY_ACCELERATES;
 }
@@ -120,10 +121,10 @@ static void find_driven(struct Resolution *resolution, const double *acceleratio
 static void find_accelerating(struct Resolution *resolution) {
   double *acceleration = resolution->probe_acceleration;
   struct Probe probe = probe_here(resolution);
-  find_driven(resolution, resolution_accelerations(resolution));
+  mark_accelerating(resolution, resolution_accelerations(resolution));
   move_nearby(&probe);
   bool exist = lagrangian.constraints.accelerations(&probe.point, acceleration) == 0;
-  find_driven(resolution, exist ? acceleration : NULL);
+  mark_accelerating(resolution, exist ? acceleration : NULL);
 }
 
 /* Gives the probe random velocities, but 0 to prescribed ones at rest. */
@@ -132,7 +133,7 @@ static void scatter_velocities(struct Probe *probe) {
   size_t n = lagrangian.coordinate_count;
   for (size_t i = 0; i < n; i++) probe->state[n + i] = lagrangian.steps.nominal[n + i] * random_number(probe);
   for (size_t i = 0; i < switches->resting_count; i++)
-    if (switches->resting[i].kind == RESTING_DRIVE && probe->resolution->moves[i] == VELOCITY_RESTS)
+    if (switches->resting[i].kind == RESTING_PRESCRIBED && probe->resolution->moves[i] == VELOCITY_RESTS)
       probe->state[n + switches->resting[i].index] = 0.0;
 }
 
@@ -166,15 +167,15 @@ static void find_moving(struct Probe *probe) {
 
 void resting_find(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  bool may_rest = solver_has_constraints(resolution->instance), has_drives = has_kind(switches, RESTING_DRIVE);
+  bool may_rest = solver_has_constraints(resolution->instance), has_prescribed = has_kind(switches, RESTING_PRESCRIBED);
   for (size_t i = 0; i < switches->resting_count; i++) {
-    bool is_prescribed = switches->resting[i].kind == RESTING_DRIVE;
+    bool is_prescribed = switches->resting[i].kind == RESTING_PRESCRIBED;
     bool moves = is_prescribed ? !is_small(resolution, i) : !may_rest;
     resolution->moves[i] = moves ? VELOCITY_MOVES : VELOCITY_RESTS;
     may_rest |= is_prescribed && !moves;
   }
-  if (!(may_rest || has_drives) || evaluate_prepare(resolution->instance) != STATUS_DONE) return;
-  if (has_drives) find_accelerating(resolution);
+  if (!(may_rest || has_prescribed) || evaluate_prepare(resolution->instance) != STATUS_DONE) return;
+  if (has_prescribed) find_accelerating(resolution);
   if (!may_rest) return;
   struct Probe probe = probe_here(resolution);
   find_moving(&probe);

@@ -3,8 +3,9 @@
  *
  * The solver makes steps of its own length until one reaches the communication point; dense output gives the state
  * there. After each solver step, its events are handled one by one: the step is cut at the event, and the solver
- * restarts after it. A step that cannot be finished ends at the last time with a state, and is discarded. It ends for
- * certain: the number of solver steps or the work is limited, and so are steps in a row that do not change the time.
+ * restarts after it. A step that cannot be finished ends at the last time with a state, and is discarded. It ends
+ * for certain. The number of solver steps or the work is limited, and so are steps in a row that do not change the
+ * time.
  */
 #include "stepping/steps.h"
 
@@ -264,8 +265,8 @@ static enum StepResult run(struct Instance *instance, struct CommunicationStep *
 }
 
 /*
- * Returns how far rounding may take a sum of equal steps from startTime past stopTime: half a unit in the last place at
- * each step, and at most half a step.
+ * Returns the distance in s by which rounding may take a sum of equal steps from startTime past stopTime. It is
+ * half a unit in the last place at each step, and at most half a step.
  */
 static double rounding_of_sum(const struct FmuState *fmu_state, double end, double size) {
   double steps = (end - fmu_state->start_time) / size + 1.0;

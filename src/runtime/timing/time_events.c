@@ -4,9 +4,9 @@
  * Between events an affine branch is f(t) = a + b t. Newton's method t - f(t) / b gives its zero from any t in one
  * step. Near the zero f(t) is an exact difference of close numbers, so a second step gives the double next to -a / b.
  *
- * The first zero of other branches, such as sin(3 t) - 1/2, is searched in one interval after another, as in search.c:
- * the coefficients of the Chebyshev polynomial bound f over an interval. Intervals begin short, and are doubled while f
- * is resolved. A pulse between the nodes of an interval, as of exp(-1e6 (t - 5)^2), can be missed.
+ * The first zero of other branches, such as sin(3 t) - 1/2, is searched in one interval after another, as in
+ * search.c. The coefficients of the Chebyshev polynomial bound f over an interval. Intervals begin short, and are
+ * doubled while f is resolved. A pulse between the nodes of an interval, as of exp(-1e6 (t - 5)^2), can be missed.
  */
 #include "timing/time_events.h"
 

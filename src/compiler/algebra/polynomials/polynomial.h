@@ -1,10 +1,10 @@
 /*
  * Sparse polynomials with numeric coefficients in up to ATOM_LIMIT indeterminates ("atoms"), and exact division.
  *
- * polynomial_divide() is multivariate division in lexicographic order (D. Cox, J. Little, D. O'Shea: Ideals, Varieties,
- * and Algorithms, section 2.3). Each step removes the leading monomial of the remainder, so that the next one is
- * smaller; it ends at the remainder 0, or fails at a leading monomial that b's does not divide. Sums merge sorted
- * lists, in linear time; a product of m and n terms takes O(m n^2) steps at worst.
+ * polynomial_divide() is multivariate division in lexicographic order (D. Cox, J. Little, D. O'Shea: Ideals,
+ * Varieties, and Algorithms, section 2.3). Each step removes the leading monomial of the remainder, so that the
+ * next one is smaller. The division ends at the remainder 0, or fails at a leading monomial that b's does not
+ * divide. Sums merge sorted lists, in linear time; a product of m and n terms takes O(m n^2) steps at worst.
  */
 #pragma once
 

@@ -194,8 +194,8 @@ static void note_large(struct Graph *graph, Node node) {
 }
 
 /*
- * Ends the collection of an expression that is too large, before it is expanded: it has more than ATOM_LIMIT symbols
- * and functions, or contains a node that was found too large.
+ * Ends the collection of an expression that is too large, before it is expanded. Such an expression has more than
+ * ATOM_LIMIT symbols and functions, or contains a node that was found too large.
  */
 static enum Visit visit_while_small(void *atoms, const struct Graph *graph, Node node) {
   enum Operation operation = graph->vertices[node].operation;

@@ -15,7 +15,7 @@ struct UnitScale {
 char *unit_remedy(const char *text);
 
 /*
- * Reads a display unit, such as "deg", "rpm", "mm/s", "N.mm" or "degC": a value x in it is factor * x + offset in the
- * coherent unit of its dimension. False if the text is no unit, or a coherent one.
+ * Reads a display unit, such as "deg", "rpm", "mm/s", "N.mm" or "degC". A value x in it is factor * x + offset in
+ * the coherent unit of its dimension. False if the text is no unit, or a coherent one.
  */
 bool display_unit_parse(const char *text, struct Dimension *dimension, struct UnitScale *scale);

@@ -2,12 +2,12 @@
  * Solves M a = b for a kinematic tree by articulated-body inertias, without forming M (R. Featherstone: Rigid Body
  * Dynamics Algorithms, 2008, section 7.3).
  *
- * For each link with the motion subspace S, from the outermost to the base: its articulated inertia I is that of its
- * bodies and of its children; U = I S, D = S^T U plus the inertia of the coordinates themselves. I - U D^-1 U^T goes to
- * the parent. The forces p follow likewise: u = b - S^T p, and p + U D^-1 u goes to the parent. From the base outwards,
- * a = D^-1 u - D^-1 U^T (acceleration of the parent). The D are the pivots of an L D L^T factorization of M, positive
- * if M is positive definite. Each pass visits each link once: the cost is proportional to the number of links.
- * Constraints within a link are further rows of D, with S = 0.
+ * For each link with the motion subspace S, from the outermost to the base: its articulated inertia I is that of
+ * its bodies and of its children. Then U = I S, and D = S^T U plus the inertia of the coordinates themselves. I - U
+ * D^-1 U^T goes to the parent. The forces p follow likewise: u = b - S^T p, and p + U D^-1 u goes to the parent.
+ * From the base outwards, a = D^-1 u - D^-1 U^T (acceleration of the parent). The D are the pivots of an L D L^T
+ * factorization of M, positive if M is positive definite. Each pass visits each link once: the cost is proportional
+ * to the number of links. Constraints within a link are further rows of D, with S = 0.
  */
 #pragma once
 

@@ -2,9 +2,10 @@
  * The mass matrix M = d2L/dv dv, with the constraints' Jacobian matrix J as K = (M J^T; J 0). Its rows are the
  * coordinates, then the constraints.
  *
- * K is sparse. Rows that are not coupled form independent blocks, found as connected components; each one is factored
- * as L D L^T in an order of minimum degree (elimination.h), in which constraints come after their coordinates, so that
- * no pivoting is needed (saddle.h). Small blocks are solved symbolically, kinematic trees by articulated inertias
+ * K is sparse. Rows that are not coupled form independent blocks, found as connected components; each one is
+ * factored as L D L^T in an order of minimum degree (elimination.h). Constraints come after their coordinates in
+ * it, so that no pivoting is needed (saddle.h). Small blocks are solved symbolically, kinematic trees by
+ * articulated inertias
  * (articulated.h), others at run time.
  */
 #pragma once

@@ -144,9 +144,9 @@ static void append_open_rows(const struct Model *model, struct Elements *element
   }
 }
 
-/* Creates the blocks of K. */
-static struct Inertia *create_bordered(const struct Model *model, struct Elements *elements,
-                                       const struct ConstraintBlock *constraint_block, const struct Trees *trees) {
+/* Creates the blocks of the matrix K with constraints (saddle.h). */
+static struct Inertia *create_constrained(const struct Model *model, struct Elements *elements,
+                                          const struct ConstraintBlock *constraint_block, const struct Trees *trees) {
   const struct Graph *graph = model->graph;
   const struct Elements *jacobian = constraint_block->jacobian;
   size_t count = model->coordinates.count;
@@ -173,7 +173,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements, &trees);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
   if (!is_right || constraint_block->count > 0)
-    inertia = is_right ? create_bordered(model, &elements, constraint_block, &trees) : NULL;
+    inertia = is_right ? create_constrained(model, &elements, constraint_block, &trees) : NULL;
   if (inertia == NULL || graph_limit(model->graph) != NULL) return inertia;
   /* The power of prescribed motions depends on accelerations, which are expressions unless there are constraints. */
   bool power_has_accelerations = constraint_block->count == 0 &&

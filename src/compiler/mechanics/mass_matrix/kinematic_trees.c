@@ -225,8 +225,8 @@ static void leave_shared_links(const struct TreeBuilder *builder, const size_t *
 }
 
 /*
- * Returns, for each constraint, whether it is local: permanent, and the only one on the coordinates of a single link,
- * as the norm of a quaternion is. If coordinates are fixed at the start, none is.
+ * Returns, for each constraint, whether it is local. A local constraint is permanent, and the only one on the
+ * coordinates of a single link, as the norm of a quaternion is. If coordinates are fixed at the start, none is.
  */
 static bool *find_local_constraints(const struct TreeBuilder *builder, const struct ConstraintBlock *constraint_block) {
   const struct Model *model = builder->model;

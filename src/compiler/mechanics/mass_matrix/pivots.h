@@ -1,8 +1,8 @@
 /*
  * Regularity of the mass matrix, and symbolic factors M = L D L^T of small blocks.
  *
- * M is regular in general if its numerical factors are so at one of eight random points: a determinant that does not
- * vanish identically vanishes there with probability 0.
+ * M is regular in general if its numerical factors are so at one of eight random points. A determinant that does
+ * not vanish identically vanishes there with probability 0.
  */
 #pragma once
 

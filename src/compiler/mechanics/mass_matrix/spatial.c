@@ -96,8 +96,8 @@ struct SpatialVector spatial_inertia_apply(struct Graph *graph, const struct Spa
 }
 
 /*
- * With the inertia in the parent's axes and r from the parent's origin, T^T inertia T for T = (1 -[r]; 0 1): the
- * coupling is coupling - mass [r], the moment is moment - coupling^T [r] + [r] (coupling - mass [r]).
+ * Computes T^T inertia T for T = (1 -[r]; 0 1), with the inertia in the parent's axes and r from the parent's
+ * origin. The coupling is coupling - mass [r]; the moment is moment - coupling^T [r] + [r] (coupling - mass [r]).
  */
 struct SpatialInertia spatial_inertia_to_parent(struct Graph *graph, const struct Pose *pose,
                                                 const struct SpatialInertia *inertia) {

@@ -7,8 +7,8 @@
 #include "model/kinematics.h"
 
 /*
- * A velocity or acceleration of a frame's origin (m/s, m/s2) and of its rotation (rad/s, rad/s2), or a force (N) with
- * its moment about the origin (N.m), along the frame's axes.
+ * A spatial vector along a frame's axes. It is a velocity or acceleration of the origin (m/s, m/s2) and of the
+ * rotation (rad/s, rad/s2), or a force (N) with its moment (N.m).
  */
 struct SpatialVector {
   struct Vector linear, angular;

@@ -2,9 +2,10 @@
  * Accelerations a and constraint forces F from K (a; F) = b with K = (M J^T; J 0), block by block; the blocks are the
  * connected components of the rows that K couples. Small blocks and kinematic trees are solved symbolically
  * (mechanics/mass_matrix/) and appear as expressions. Each other block is factored at run time, K = L D L^T without
- * pivoting (ldlt.h, saddle.h), in the sparse pattern of a minimum-degree elimination in which each constraint follows
- * its coordinates. A factorization costs the sum of the squares of the column lengths of L, a solution twice the
- * elements of L. A. George, J. W. H. Liu: Computer Solution of Large Sparse Positive Definite Systems, 1981.
+ * pivoting (ldlt.h, saddle.h). The sparse pattern is that of a minimum-degree elimination in which each constraint
+ * follows its coordinates. A factorization costs the sum of the squares of the column lengths of L, a solution
+ * twice the elements of L. A. George, J. W. H. Liu: Computer Solution of Large Sparse Positive Definite Systems,
+ * 1981.
  */
 #include "program/expressions/accelerations.h"
 

@@ -11,9 +11,9 @@
 #include "algebra/node_list.h"
 
 /*
- * d derivatives / d state in compressed columns: column j has elements start[j] .. start[j + 1] - 1, rows ascending.
- * In rows of a block that is factored at run time, value holds right sides, and each column has all rows of the block
- * or none. Right sides of constraint rows are in sides, not among the elements.
+ * d derivatives / d state in compressed columns: column j has elements start[j] .. start[j + 1] - 1, rows
+ * ascending. In rows of a block that is factored at run time, value has right sides. Each column has all rows of
+ * the block or none. Right sides of constraint rows are in sides, not among the elements.
  */
 struct JacobianExpressions {
   size_t *start, *row;

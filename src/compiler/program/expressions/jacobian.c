@@ -3,11 +3,11 @@
  *
  *     M da/dx_j = -dR/dx_j   at constant a.
  *
- * One reverse sweep for each row of R gives its gradient, so that only nonzero elements are formed; the columns are
+ * One reverse sweep for each row of R gives its gradient, so that only nonzero elements are formed. The columns are
  * then solved symbolically in small blocks, and by the factors of M at run time in others. For kinematic trees,
- * directional derivatives along each state (forward mode) are cheaper: only the pattern is found here, from the states
- * that each block depends on. The number of elements is bounded by JACOBIAN_LIMIT. A. Griewank, A. Walther: Evaluating
- * Derivatives, 2nd ed., 2008, chapters 3 and 7.
+ * directional derivatives along each state (forward mode) are cheaper. Only the pattern is found here, from the
+ * states that each block depends on. The number of elements is bounded by JACOBIAN_LIMIT. A. Griewank, A. Walther:
+ * Evaluating Derivatives, 2nd ed., 2008, chapters 3 and 7.
  */
 #include "program/expressions/jacobian.h"
 
@@ -161,8 +161,8 @@ static void append_rates(struct JacobianElements *list, struct Graph *graph, con
 }
 
 /*
- * Returns only the pattern, for a Jacobian by directional derivatives: of kinematic trees, where they cost less than
- * formulas for each element, and of rates that depend on values found at run time.
+ * Returns only the pattern, for a Jacobian by directional derivatives. They serve kinematic trees, where they cost
+ * less than formulas for each element, and rates that depend on values found at run time.
  */
 static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {
   struct JacobianElements list = {0};

@@ -5,8 +5,8 @@
 #include "algebra/node_list.h"
 
 /*
- * The targets are the accelerations (or M and the right side of blocks that are factored at run time), the rates of
- * first-order states, and the auxiliary nodes of recurrences, such as cos(x) for sin(x).
+ * The targets are the accelerations, the rates of first-order states, and the auxiliary nodes of recurrences, such
+ * as cos(x) for sin(x). For blocks that are factored at run time, M and the right side replace the accelerations.
  */
 struct SeriesPlan {
   struct NodeList targets;

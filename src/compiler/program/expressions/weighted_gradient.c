@@ -4,9 +4,9 @@
  *
  *     K lambda = (ds/da)^T,   grad s = ds/dx - lambda^T dR/dx   at constant a and lambda,
  *
- * where K is symmetric, so that its factors serve. Each term is one reverse sweep, so that all elements of the
- * gradient cost a small multiple of one evaluation and one solution, however many parameters there are. A. Griewank,
- * A. Walther: Evaluating Derivatives, 2nd ed., 2008, section 3.2.
+ * where K is symmetric, so that its factors serve. Each term is one reverse sweep. So all elements of the gradient
+ * cost a small multiple of one evaluation and one solution, however many parameters there are. A. Griewank, A.
+ * Walther: Evaluating Derivatives, 2nd ed., 2008, section 3.2.
  */
 #include "program/expressions/weighted_gradient.h"
 

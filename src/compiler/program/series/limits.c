@@ -1,7 +1,7 @@
 /*
- * Step limits by bounds of series. A feature of f(u(t)) whose Taylor coefficients vanish at the start of a step, such
- * as a pulse of exp(u) or a pole of 1/u, is invisible to the truncated series of f. The excursion of the polynomial u
- * over a step h,
+ * Step limits by bounds of series. The Taylor coefficients of f(u(t)) may vanish at the start of a step, as of a
+ * pulse of exp(u) or before a pole of 1/u. The truncated series of f then does not show the feature. The excursion
+ * of the polynomial u over a step h,
  *
  *     sum over k >= 1 of |u_k| h^k,
  *

@@ -1,6 +1,6 @@
 /*
- * Taylor coefficients by recurrences. For u(t) = sum over k of u_k t^k, each operation gives the coefficient k of its
- * result from coefficients of its operands up to k, and of the result and auxiliary nodes below k:
+ * Taylor coefficients by recurrences. Let u(t) = sum over k of u_k t^k. Each operation gives coefficient k of its
+ * result from those of its operands up to k, and of the result and auxiliary nodes below k:
  *
  *     c = a b         c_k = sum over j of a_j b_(k-j)  (Cauchy)
  *     c = a / b       c_k = (a_k - sum over j >= 1 of b_j c_(k-j)) / b_0

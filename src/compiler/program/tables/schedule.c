@@ -1,7 +1,7 @@
 /*
- * Level scheduling. The level of an instruction is 1 + the highest level that it must follow: the last writes of its
- * operands, and the last writes and reads of the slot that its result overwrites. Instructions of one level are
- * independent and are sorted by opcode, function and spaces into runs. One pass and one sort: O(n log n).
+ * Level scheduling. The level of an instruction is 1 + the highest level that it must follow. It follows the last
+ * writes of its operands, and the last writes and reads of the slot that its result overwrites. Instructions of one
+ * level are independent and are sorted by opcode, function and spaces into runs. One pass and one sort: O(n log n).
  */
 #include "program/tables/schedule.h"
 

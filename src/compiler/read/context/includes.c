@@ -161,7 +161,7 @@ static void note_overrides(struct Reader *reader, const struct Source *source) {
     char *name = parse_name(reader->scope, text, location_of(node, "name", 0), true);
     char *full_name = format_text("%s%s", source->prefix, name != NULL ? name : "");
     if (is_overridden_in(names_find(reader->includes->overrides, full_name), source->outer))
-      report_at(reader, node, "'%s' is given twice; expected once", name);
+      report_at(reader, node, "the <include> overrides '%s' twice; expected once", name);
     else if (name != NULL)
       add_override(reader, full_name, (struct Override){.node = node, .source = source->outer, .target = source});
   }

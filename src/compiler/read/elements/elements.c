@@ -173,12 +173,12 @@ static Node read_energy(struct Reader *reader, xmlNodePtr node, struct Quantity 
 
 static void read_kinetic(struct Reader *reader, xmlNodePtr node) {
   struct Model *model = reader->model;
-  bool driven;
+  bool is_prescribed;
   Node term = read_energy(reader, node, &model->energies.displaced_kinetic, &model->energies.explicit_kinetic,
                           "the kinetic energy", IN_ENERGY, "J");
   add_term(model, &model->energies.kinetic, term);
-  add_term(model, &model->energies.kinetic_energy, energy_of_kinetic_term(model, term, &driven));
-  model->energies.driven |= driven;
+  add_term(model, &model->energies.kinetic_energy, energy_of_kinetic_term(model, term, &is_prescribed));
+  model->energies.has_prescribed |= is_prescribed;
 }
 
 /* Reads the prescribed acceleration of a coordinate. */

@@ -25,7 +25,7 @@ static void report_target(struct Reader *reader, xmlNodePtr node, const char *at
                 targets[i].attribute, targets[i].attribute, name);
       return;
     }
-  report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name; expected one of the file", attribute, name,
+  report_at(reader, node, "<set %s=\"%s\">: there is no %s of this name; expected an existing name", attribute, name,
             attribute);
 }
 

@@ -1,6 +1,6 @@
 /*
- * Reads tables of two arguments: a line with the knots of the first argument, then a line for each knot of the second
- * argument with the values there.
+ * Reads tables of two arguments. A line has the knots of the first argument; then a line for each knot of the
+ * second argument has the values there.
  */
 #pragma once
 

@@ -32,8 +32,8 @@ static struct Quantity in_own_unit(struct Reader *reader, const struct NamedExpr
 }
 
 /*
- * Reads the text of an element as an expression. If modes occur in it, reads it twice more for <set>: with abs, min and if
- * evaluated directly at the event, and as the unsplit expression.
+ * Reads the text of an element as an expression. If modes occur in it, reads it twice more for <set>. Once abs, min
+ * and if are evaluated directly at the event, once the expression is unsplit.
  */
 static struct Quantity read_text(struct Reader *reader, xmlNodePtr node, const char *what) {
   struct Quantity value = expression_text_of(reader, node, what, IN_OUTPUT);

@@ -3,11 +3,12 @@
  *
  *   (b - a) sum over i of w_i f(a + (b - a) s_i),
  *
- * with Gauss-Legendre nodes s_i and weights w_i in (0, 1) (algebra/quadrature.h). The number of nodes is the smallest
- * for which this sum, and its derivatives by the moving symbols, agree to 1e-13 of the integral of their magnitude with
- * a reference rule of many nodes: at the start values, and at SAMPLES random states around them. The search ends at
- * CHOICE_LIMIT nodes. Then a search finds how far each variable may move from its start value. Outside of this range
- * the sum is divided by 0, so that the FMU stops in place of returning a wrong result.
+ * with Gauss-Legendre nodes s_i and weights w_i in (0, 1) (algebra/quadrature.h). The number of nodes is the
+ * smallest for which this sum and its derivatives by the moving symbols agree with a rule of many nodes. The bound
+ * is 1e-13 of the integral of their magnitude. The comparison is at the start values, and at SAMPLES random states
+ * around them. The search ends at CHOICE_LIMIT nodes. Then a search finds how far each variable may move from its
+ * start value. Outside of this range the sum is divided by 0, so that the FMU stops in place of returning a wrong
+ * result.
  */
 #include "read/expressions/integration.h"
 
@@ -231,8 +232,8 @@ static struct QuadratureChoice choose_nodes(struct Parser *parser, const struct 
   struct Sampling sampling = sampling_create(parser->scope, integral->value);
   struct QuadratureChoice choice = choose(&sampling, limits_move);
   if (!choice.has_value)
-    FAIL(parser, "%s: %s has no finite value; expected one at the start values and near them", parser->location.what,
-         integral->text);
+    FAIL(parser, "%s: %s is not finite at or near the start values; expected an integrand that is finite there",
+         parser->location.what, integral->text);
   else if (is_new(parser, integral)) report_choice(parser, integral, &choice);
   return choice;
 }

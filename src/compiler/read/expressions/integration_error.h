@@ -16,8 +16,8 @@ struct Rule {
 struct Rule rule_of(size_t count);
 
 /*
- * The integrand over the last dummy of the scope as a function of a share from 0 to 1 of its interval, and its
- * derivatives by the moving symbols, with the present sample state and reference integrals by many nodes.
+ * The integrand and its derivatives by the moving symbols, as functions of a share from 0 to 1 of the interval of
+ * the scope's last dummy. The struct also has the present sample state and reference integrals by many nodes.
  */
 struct Sampling {
   struct Scope *scope;
@@ -53,7 +53,7 @@ double sampling_value(const struct Sampling *sampling, size_t symbol, double spr
 double *sampling_rounding_bounds(const struct Sampling *sampling);
 
 /*
- * Returns the largest error of a rule at the present state, relative to the integral of the magnitude, beyond the
- * rounding error bounds; NULL for none.
+ * Returns the largest error of a rule at the present state beyond the rounding error bounds; NULL for none. It is
+ * relative to the integral of the magnitude.
  */
 double sampling_error(struct Sampling *sampling, const struct Rule *rule, const double *rounding_bounds);

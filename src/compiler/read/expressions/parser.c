@@ -244,8 +244,8 @@ void require_new_name(struct Parser *parser, const char *what, const char *name,
   bool is_known = find_quantity(parser, name) != NULL || definitions_contain(parser->scope->definitions, full_name);
   release(full_name);
   if (is_known)
-    FAIL(parser, "%s: the %s '%s' of %s(...) is already a name; expected a new one", parser->location.what, what, name,
-         function);
+    FAIL(parser, "%s: the %s '%s' of %s(...) is already defined; expected another name", parser->location.what, what,
+         name, function);
 }
 
 static struct SumHead parse_sum_head(struct Parser *parser) {
@@ -526,8 +526,8 @@ static struct Quantity condition_as_quantity(struct Parser *parser) {
 }
 
 /*
- * True if a node is a truth value that is constant between events: a mode that is not the sign of an expression, a
- * state of contacts or frictions, or if(...).
+ * True if a node is a truth value that is constant between events. It is a mode other than the sign of an
+ * expression, a state of contacts or frictions, or if(...).
  */
 static bool is_truth(const struct Scope *scope, const char *text, Node node) {
   if (!graph_is_constant_in_time(scope->graph, node)) return false;

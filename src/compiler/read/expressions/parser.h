@@ -37,7 +37,7 @@ struct Quantity parse_power(struct Parser *parser);
  */
 char *parse_declared(struct Parser *parser, const char *what, const char *usage);
 
-/* Reports an index or variable that a call declares and that is a name already. */
+/* Reports an index or variable that a call declares and that is already defined. */
 void require_new_name(struct Parser *parser, const char *what, const char *name, const char *function);
 
 /* Parses an expression of compile-time numbers whose value must be an integer. */

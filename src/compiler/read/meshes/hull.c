@@ -7,11 +7,11 @@
  * positive if p is outside of face abc, is exact in 64-bit integers: coincident and coplanar points need no special
  * cases.
  *
- * The hull begins as a tetrahedron of distant points. Each step finds the point farthest from the hull and removes the
- * faces that see it. It connects the horizon, the boundary of these faces, to the point. The loop ends when no point is
- * farther than the tolerance, or at MOST_CORNERS corners. Corners within the tolerance of the hull of the others are
- * then removed; if the hull was full, the search is repeated without them, which leaves fewer points each time. A step
- * costs points times faces, so that the total is linear in the number of points.
+ * The hull begins as a tetrahedron of distant points. Each step finds the point farthest from the hull and removes
+ * the faces that see it. It connects the horizon, the boundary of these faces, to the point. The loop ends when no
+ * point is farther than the tolerance, or at MOST_CORNERS corners. Corners within the tolerance of the hull of the
+ * others are then removed. If the hull was full, the search is repeated without them, which leaves fewer points
+ * each time. A step costs points times faces, so that the total is linear in the number of points.
  *
  * C. B. Barber, D. P. Dobkin, H. Huhdanpaa, The Quickhull algorithm for convex hulls, ACM Trans. Math. Softw. 22
  * (1996).

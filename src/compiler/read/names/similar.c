@@ -14,9 +14,9 @@ static bool is_same_letter(char a, char b) {
 }
 
 /*
- * Returns the optimal string alignment distance of two names: the least number of insertions, deletions, replacements
- * and exchanges of neighbouring letters that turn one into the other, no substring being edited twice. Case is ignored.
- * Dynamic programming over prefixes of lengths i and j:
+ * Returns the optimal string alignment distance of two names. It is the least number of insertions, deletions,
+ * replacements and exchanges of neighbouring letters that turn one into the other. No substring is edited twice.
+ * Case is ignored. Dynamic programming over prefixes of lengths i and j:
  *
  *   d(i, j) = min(d(i-1, j) + 1, d(i, j-1) + 1, d(i-1, j-1) + [a(i) != b(j)],
  *                 d(i-2, j-2) + 1 if a(i) = b(j-1) and a(i-1) = b(j)).

@@ -80,7 +80,7 @@ static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touch
   char *path = named != NULL ? path_in_package(robot, named) : NULL;
   if (path == NULL)
     return format_text(
-        "the mesh '%s' is not there; expected a path relative to this file, or that of a package here or "
+        "the mesh '%s' does not exist; expected a path relative to this file, or that of a package here or "
         "in a folder above",
         named != NULL ? named : "");
   struct Mesh *mesh = mesh_read(path_beside_file(robot, path), factors, &problem);

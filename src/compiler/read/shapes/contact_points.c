@@ -1,9 +1,10 @@
 /*
  * Nearest points in closed form. A shape touches a plane with a fixed list of points: corners of boxes and meshes,
- * points on the rims of cylinders, centres of round ends; an ellipsoid with the point of its support function. Other
- * pairs reduce to two balls, gap = |p1 - p2| - r1 - r2 with the nearest points p1, p2 of their centres, axes or solids.
- * Nearest points follow by clamping coordinates, whose kinks are events. The normal (p1 - p2)/|p1 - p2| is undefined if
- * a centre enters the other solid or axis, so that such deep penetration is not covered.
+ * points on the rims of cylinders, centres of round ends. An ellipsoid touches it with the point of its support
+ * function. Other pairs reduce to two balls, gap = |p1 - p2| - r1 - r2 with the nearest points p1, p2 of their
+ * centres, axes or solids. Nearest points follow by clamping coordinates, whose kinks are events. The normal (p1 -
+ * p2)/|p1 - p2| is undefined if a centre enters the other solid or axis, so that such deep penetration is not
+ * covered.
  *
  * C. Ericson, Real-Time Collision Detection, 2005, section 5.1.
  */
@@ -160,11 +161,12 @@ static void ellipsoid_contact(const struct ShapePair *pair, struct ContactPoints
     Node half = scale(graph, 0.5, pair->first->shape->size.along[i]);
     lowest.along[i] = multiply(graph, power_number(graph, half, 2.0), own.along[i]);
   }
-  Node reach = power_number(graph, vector_dot(graph, lowest, own), 0.5);
-  lowest = rotated_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, reach, -1.0)), lowest));
+  Node support = power_number(graph, vector_dot(graph, lowest, own), 0.5);
+  lowest =
+      rotated_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, support, -1.0)), lowest));
   Node height = vector_dot(graph, normal, vector_subtract(graph, centre, middle_of(pair, pair->second)));
   contacts->items[contacts->count++] =
-      (struct ContactPoint){vector_add(graph, centre, lowest), normal, subtract(graph, height, reach), ZERO};
+      (struct ContactPoint){vector_add(graph, centre, lowest), normal, subtract(graph, height, support), ZERO};
 }
 
 /*
@@ -240,8 +242,9 @@ static void cylinder_contact(const struct ShapePair *pair, struct ContactPoints 
 }
 
 /*
- * Nearest points of two segments: the nearest point of the infinite lines is clamped to the first segment, projected to
- * the second and clamped, and projected back and clamped. This is exact (Ericson, section 5.1.9).
+ * Finds the nearest points of two segments. The nearest point of the infinite lines is clamped to the first
+ * segment, projected to the second and clamped, then projected back and clamped. This is exact (Ericson, section
+ * 5.1.9).
  */
 static void capsules_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   static const double nothing = 1e-12; /* for parallel lines, where any point is nearest */

@@ -18,7 +18,7 @@ static void add_kinetic_energy(struct Model *model, struct Scope *scope, Node in
   struct Graph *graph = model->graph;
   Node rate = total_time_derivative(scope, position);
   append_energy(model, multiply(graph, inertia, power_number(graph, rate, 2.0)));
-  model->energies.driven |= graph_depends_on(graph, position, TIME);
+  model->energies.has_prescribed |= graph_depends_on(graph, position, TIME);
 }
 
 /* A body's index in the model, and its line in its own file. */
@@ -200,8 +200,8 @@ static void add_spatial_energy(struct Model *model, const struct Body *body) {
   append_energy(model, multiply(graph, body->mass.node, vector_dot(graph, body->velocity, body->velocity)));
   append_energy(model, vector_dot(graph, body->angular_velocity, momentum));
   for (int i = 0; i < 3; i++)
-    model->energies.driven |= graph_depends_on(graph, body->position[i].node, TIME) ||
-                              graph_depends_on(graph, body->angular_velocity.along[i], TIME);
+    model->energies.has_prescribed |= graph_depends_on(graph, body->position[i].node, TIME) ||
+                                      graph_depends_on(graph, body->angular_velocity.along[i], TIME);
 }
 
 /* Reads a particle, body or point in a frame. */

@@ -61,7 +61,7 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
 void add_virtual_work(struct Model *model, Node force, const struct Gradient *gradient) {
   for (size_t i = 0; i < gradient->count; i++) {
     const struct Symbol *symbol = graph_symbol_of(model->graph, gradient->symbols[i]);
-    struct Quantity *sum = symbol->kind == TIME ? &model->forces.driven_power : &model->forces.along[symbol->index];
+    struct Quantity *sum = symbol->kind == TIME ? &model->forces.prescribed_power : &model->forces.along[symbol->index];
     add_term(model, sum, multiply(model->graph, force, gradient->values[i]));
   }
 }
@@ -150,7 +150,7 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Vector velocity = vector_without_displacements(reader, line, "the torque", displaced);
   struct Gradient gradient = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
   add_virtual_work(model, ONE, &gradient);
-  add_term(model, &model->forces.driven_power, vector_dot(graph, torque, prescribed_part(model, velocity)));
+  add_term(model, &model->forces.prescribed_power, vector_dot(graph, torque, prescribed_part(model, velocity)));
   model->forces.torques = make_room(model->forces.torques, model->forces.torque_count, sizeof *model->forces.torques);
   model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};
 }

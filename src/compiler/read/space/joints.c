@@ -14,8 +14,8 @@
 #include "read/space/vanishing.h"
 
 /*
- * Quantities that a joint constrains: the position of `to` along the axes of `from`; the directions of its axes; for a
- * screw the thread; for rolling the velocity of the lowest point, and its height.
+ * Quantities that a joint constrains: the position of `to` along the axes of `from`, and the directions of its
+ * axes. A screw also constrains the thread, rolling the velocity of the lowest point and its height.
  */
 enum ConstrainedQuantity {
   ALONG_X,

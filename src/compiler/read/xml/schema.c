@@ -85,8 +85,8 @@ static void collect(xmlNodePtr schema, xmlNodePtr declaration, const char *kind,
 }
 
 /*
- * Returns the declaration of an element: the one in the type named after its parent if there is one, else the first one
- * in the schema.
+ * Returns the declaration of an element. It is the one in the type named after its parent if there is one, else the
+ * first one in the schema.
  */
 static xmlNodePtr declaration_of(const struct SchemaCheck *check, xmlNodePtr element) {
   xmlNodePtr schema = xmlDocGetRootElement(check->schema);

@@ -84,8 +84,8 @@ bool bdf_restart(struct Instance *instance, const double *state, const struct Co
  * Returns the longest step: with inputs or time in the equations, one beyond the communication step could miss a pulse.
  */
 static double longest_step(const struct CommunicationStep *step) {
-  bool driven = lagrangian.input_count > 0 || lagrangian.steps.depends_on_time;
-  return driven ? fmin(step->length, lagrangian.steps.max_step) : lagrangian.steps.max_step;
+  bool is_forced = lagrangian.input_count > 0 || lagrangian.steps.depends_on_time;
+  return is_forced ? fmin(step->length, lagrangian.steps.max_step) : lagrangian.steps.max_step;
 }
 
 /*

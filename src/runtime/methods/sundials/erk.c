@@ -60,8 +60,8 @@ static bool start_method(struct Instance *instance, struct Erk *erk, double time
 }
 
 /*
- * True if two values of the derivative of state i differ by more than half their size, and by more than 20 times what
- * the tolerance allows over the step.
+ * True if two values of the derivative of state i differ by more than half their size. They must also differ by
+ * more than 20 times what the tolerance allows over the step.
  */
 static bool differ(const struct Sundials *sundials, size_t i, double step, double one, double other) {
   double weight =
@@ -109,7 +109,7 @@ static bool restart(struct Instance *instance, const double *state, const struct
 }
 
 /*
- * If a step fails, because a stage has no right side or the polynomial does not obey the equations, a tenth of it is
+ * A step fails if a stage has no right side or the polynomial does not obey the equations. A tenth of it is then
  * tried, down to the resolution of time.
  */
 static const char *advance(struct Instance *instance, const struct CommunicationStep *step) {

@@ -18,8 +18,8 @@ struct SundialsCall {
 };
 
 /*
- * The innermost task of this thread. It is in the thread's static block: otherwise the first access in a thread would
- * allocate, and the C library would end the process if that failed.
+ * The innermost task of this thread. It is in the thread's static block. Otherwise the first access in a thread
+ * would allocate, and the C library would end the process if that failed.
  */
 static _Thread_local struct SundialsCall *current __attribute__((tls_model("initial-exec")));
 

@@ -34,8 +34,8 @@ bool sundials_interpolate(struct Instance *instance,
                           double time, double *state);
 
 /*
- * Returns the longest step from this time and the solver's state, at most bound, in which no function in the equations
- * can hide a change (first_terms.h).
+ * Returns the longest step from this time and the solver's state, at most bound. No function in the equations can
+ * hide a change in it (first_terms.h).
  */
 double sundials_longest_step(struct Instance *instance, double time, double bound);
 
@@ -44,8 +44,8 @@ bool sundials_succeeded(const struct Instance *instance, int flag, const char *c
 #define SUCCEEDS(instance, function, ...) sundials_succeeded(instance, function(__VA_ARGS__), #function)
 
 /*
- * Takes the rest of a communication step by Euler's method, exact to rounding, if it is a few units in the last place
- * of the time and so too short for the solver. False if it is longer, or if the derivative does not exist.
+ * Takes the rest of a communication step by Euler's method if it is a few units in the last place of the time. That
+ * is exact to rounding, and too short for the solver. False if it is longer, or if the derivative does not exist.
  */
 bool sundials_tiny_step(struct Instance *instance, const struct CommunicationStep *step);
 

@@ -59,8 +59,8 @@ struct Attributes {
 };
 
 /*
- * Warns of attributes in the element and its descendants that are not read and may change the motion: those with a
- * remedy, and those that the table does not list for their element. The last row has no elements.
+ * Warns of attributes in the element and its descendants that are not read and may change the motion. These have a
+ * remedy, or the table does not list them for their element. The last row has no elements.
  */
 void check_attributes(struct RobotFile *file, xmlNodePtr node, const struct Attributes *table);
 

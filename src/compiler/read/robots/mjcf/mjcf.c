@@ -84,8 +84,7 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
   if (attribute_is(flag, "gravity", "disable")) memset(mjcf->file.robot->gravity, 0, sizeof(double[3]));
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (attribute_is(flag, flags[i], "disable"))
-      report_error(mjcf->file.diagnostics, line_of(flag),
-                   "%s=\"disable\" of <flag> is not read; expected a file without it", flags[i]);
+      report_error(mjcf->file.diagnostics, line_of(flag), "%s=\"disable\" of <flag> is not read; remove it", flags[i]);
 }
 
 static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {

@@ -86,7 +86,7 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
     if (!isnan(robot->joints[i]->actuator_limits[0])) {
       report_error(mjcf->file.diagnostics, line_of(node),
                    "the actuator '%s' pulls along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
-                   "expected a file without this, or forcerange of the actuators",
+                   "expected forcerange of the actuators in its place",
                    actuator->name, robot->joints[i]->name);
       return;
     }

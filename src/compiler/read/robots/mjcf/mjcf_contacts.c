@@ -206,7 +206,7 @@ void mjcf_check_contacts(struct Mjcf *mjcf) {
   const struct RobotOptions *options = mjcf->file.options;
   if (mjcf->has_no_contacts && options->has_ground)
     report_warning(mjcf->file.diagnostics, mjcf->file.robot->line,
-                   "nothing touches the ground: contact=\"disable\" of <flag>; expected a file without it");
+                   "nothing touches the ground: contact=\"disable\" of <flag>; remove it");
   if (mjcf->has_no_contacts || (options->says_ground && !options->has_ground)) return;
   check_ground(mjcf);
   check_pairs(mjcf, true);

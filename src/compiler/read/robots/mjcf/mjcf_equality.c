@@ -17,7 +17,7 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
   for (int i = 0; i < 2; i++)
     if (joints[i] == NULL && *names[i] != '\0')
       report_error(mjcf->file.diagnostics, line_of(node),
-                   "there is no joint '%s' for an <equality>; expected one of the file", names[i]);
+                   "there is no joint '%s' for an <equality>; expected an existing name", names[i]);
   if (c[2] != 0 || c[3] != 0 || c[4] != 0)
     report_error(mjcf->file.diagnostics, line_of(node),
                  "polycoef of <joint> is not linear; expected a <constraint> in a <system> that includes the robot");
@@ -46,7 +46,7 @@ static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
     ends->names[i] = is_world ? copy_text(mjcf_world) : required_attribute(&mjcf->file, node, names[i]);
     ends->placements[i] = mjcf_placement_of(mjcf, ends->names[i]);
     if (ends->placements[i] == NULL && *ends->names[i] != '\0')
-      report_error(mjcf->file.diagnostics, line_of(node), "there is no %s '%s' for a <%s>; expected one of the file",
+      report_error(mjcf->file.diagnostics, line_of(node), "there is no %s '%s' for a <%s>; expected an existing name",
                    names == of_sites ? "site" : "body", ends->names[i], (const char *)node->name);
   }
   return ends->placements[0] != NULL && ends->placements[1] != NULL;

@@ -116,7 +116,7 @@ static char *find_file(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mes
   char *path = path_in_package(robot, named);
   if (path == NULL)
     mesh->problem =
-        format_text("the mesh '%s' is not there; expected a path relative to this file, or to its meshdir", named);
+        format_text("the mesh '%s' does not exist; expected a path relative to this file, or to its meshdir", named);
   return path;
 }
 
@@ -161,7 +161,7 @@ const struct MjcfMesh *mjcf_mesh(struct Mjcf *mjcf, xmlNodePtr node, const char 
   xmlNodePtr asset = find_asset(mjcf, name);
   if (asset == NULL) {
     report_error(mjcf->file.diagnostics, line_of(node),
-                 "there is no <mesh> '%s' in an <asset>; expected one of the file", name);
+                 "there is no <mesh> '%s' in an <asset>; expected an existing name", name);
     return NULL;
   }
   mesh = allocate(1, sizeof *mesh);

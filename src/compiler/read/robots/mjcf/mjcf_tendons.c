@@ -8,7 +8,7 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
-static void read_pulls(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {
+static void read_fixed_tendon(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {
   struct Transmission *transmission = &tendon->transmission;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (!is_element(child, "joint")) continue;
@@ -124,7 +124,7 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
   double limits[2];
   if (tendon.name == NULL) tendon.name = format_text("tendon%zu", robot->tendon_count + 1);
   if (is_spatial) read_path(mjcf, node, &tendon);
-  else read_pulls(mjcf, node, &tendon);
+  else read_fixed_tendon(mjcf, node, &tendon);
   tendon.start = start_length(mjcf, &tendon.transmission);
   read_relaxed(mjcf, node, &tendon);
   tendon.stiffness = mjcf_number_not_negative(mjcf, node, "stiffness", 0);
@@ -148,6 +148,6 @@ const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char 
   }
   report_error(mjcf->file.diagnostics, line_of(node), "there is no tendon '%s' for a <%s>; %s", name,
                (const char *)node->name,
-               similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : "expected one of the file");
+               similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : "expected an existing name");
   return NULL;
 }

@@ -86,7 +86,7 @@ static bool defines_law(xmlNodePtr node) {
 
 /*
  * True if a <default> makes MuJoCo's gain and bias of the actuator differ from those read here. In MuJoCo each
- * <default> sets the gain and bias of all kinds of actuators; a <general> only as far as it says so, and a <motor>
+ * <default> sets the gain and bias of all kinds of actuators. A <general> sets only what it names, and a <motor>
  * resets them. *is_set_back: a <motor> in an inner class, or further down, has reset them.
  */
 static bool overrides_law(xmlNodePtr found, xmlNodePtr node, bool *is_set_back) {
@@ -309,6 +309,6 @@ void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
   const char *text = mjcf_text(mjcf, node, name);
   if (text == NULL || requests_nothing(text)) return;
   report_error(mjcf->file.diagnostics, line_of(node),
-               "%s=\"%.60s\" of <%s> is not read, and would change the motion; expected a file without it", name, text,
+               "%s=\"%.60s\" of <%s> is not read, and would change the motion; remove it", name, text,
                (const char *)node->name);
 }

@@ -16,7 +16,7 @@ class Fault(NamedTuple):
     function: str = None
 
 
-class Place(NamedTuple):
+class Location(NamedTuple):
     file: Path  # relative to ROOT
     start: int
     end: int
@@ -38,7 +38,7 @@ def spans(text, function):
     return [match.span() for match in found]
 
 
-def places_of(fault):
+def locations_of(fault):
     wanted = "".join(fault.right.split())
     for path, (text, squeezed) in sources().items():
         if wanted not in squeezed:
@@ -47,14 +47,14 @@ def places_of(fault):
             marks = [i for i in range(first, last) if not text[i].isspace()]
             part = "".join(text[i] for i in marks)
             for match in re.finditer(re.escape(wanted), part):
-                yield Place(path, marks[match.start()], marks[match.end() - 1] + 1)
+                yield Location(path, marks[match.start()], marks[match.end() - 1] + 1)
 
 
 def find(fault):
-    """The place of a fault. Raises LookupError if there is none, or several."""
-    places = list(places_of(fault))
-    if len(places) == 1:
-        return places[0]
+    """Return the location of a fault; raise LookupError if there is none, or several."""
+    locations = list(locations_of(fault))
+    if len(locations) == 1:
+        return locations[0]
     where = f" in {fault.function}()" if fault.function else ""
-    files = ", ".join(sorted({str(place.file) for place in places})) or "no file"
-    raise LookupError(f"{fault.right!r}{where} stands {len(places)} times, in {files}; expected once (or the name of a function, or more of the text)")
+    files = ", ".join(sorted({str(location.file) for location in locations})) or "no file"
+    raise LookupError(f"{fault.right!r}{where} stands {len(locations)} times, in {files}; expected once (or the name of a function, or more of the text)")
