@@ -248,7 +248,7 @@ CASES = [
     ("dashes in a comment", 2, '<!-- mass -- of the bob --><parameter name="m" start="1"/>', 2, "'--' stands inside of <!--"),
     ("comment without end", 2, '<!-- mass', 13, "a comment has no end; expected -->"),
     ("entity of other languages", 8, "<potential>m&middot;g*bob.y</potential>", 8, "'&middot;' is not known; .* \\* for a product"),
-    ("declaration further down", 1, '\n<?xml version="1.0"?><system name="Broken">', 2, "<.xml ....> stands further down; expected it at the very beginning"),
+    ("declaration further down", 2, '<?xml version="1.0"?><parameter name="m" start="1"/>', 2, "<.xml ....> stands further down; expected it at the very beginning"),
     ("unknown encoding", 1, '<?xml version="1.0" encoding="mine"?><system name="Broken">', 1, "does not match the encoding of its first line.*expected UTF-8"),
     ("control character", 8, "<potential>m*g\a*bob.y</potential>", 8, "there is an invisible character here"),
     ("function without parentheses", 7, '<particle name="bob" mass="m" y="l*cos theta"/>', 7, r"'cos' is not a variable but a function; .*as in cos\(...\)"),
@@ -424,11 +424,23 @@ def test_events_without_coordinates_and_states(element, tmp_path):
     assert result.returncode == 1 and re.fullmatch(f"system.xml:2: an? <{element}> needs coordinates or states.*; expected a <state>, such as .*\n", result.stderr), result.stderr
 
 
-@pytest.mark.parametrize("version", ["1.1", "1.2"])
+@pytest.mark.parametrize("version", ["1.1", "1.2", "0.0"])
 def test_another_version_of_xml(version, tmp_path):
-    """lagc reads the file with a warning, as XML 1.0 requires."""
+    """lagc reads the file with a warning, as XML 1.0 requires for 1.x."""
     result = compile_text(f'<?xml version="{version}"?>\n{RIGHT}', tmp_path)
     assert (result.returncode, result.stderr) == (0, "system.xml:1: warning: the first line names a version of XML other than 1.0; expected <?xml version=\"1.0\"?>, or no such line\n")
+
+
+@pytest.mark.parametrize("first", ["\n", "<!-- a\n", "<!-- <?xml\n--> <!-- b -->"])
+def test_a_declaration_after_comments(first, tmp_path):
+    """Messages about lines below it stay right."""
+    end = "-->" if first.endswith("a\n") else ""
+    text = f'{first}{end}<?xml version="1.0" encoding="UTF-8"\n?>\n{RIGHT}'
+    result = compile_text(text, tmp_path)
+    warning = "system.xml:2: warning: <?xml ...?> stands further down; expected it at the very beginning of the file, or left out\n"
+    assert (result.returncode, result.stderr) == (0, warning)
+    result = compile_text(text.replace("<particle ", "<particel "), tmp_path)
+    assert result.returncode == 1 and f"system.xml:{text[:text.index('<particle ')].count(chr(10)) + 1}: " in result.stderr
 
 
 def test_a_missing_file_is_reported_once(tmp_path):

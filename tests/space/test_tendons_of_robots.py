@@ -15,7 +15,7 @@ G, L0, H = 9.81, 0.4, 0.3
 # with friction.
 FILE = f"""<mujoco model="m"><option gravity="0 0 {-G}"/><worldbody>
   <site name="post" pos="0 {H} 0"/><site name="pulley" pos="2 0 1"/>
-  <body name="slider"><joint name="s" type="slide" axis="1 0 0" ref="0.4"/><geom size="0.1" mass="2"/><site name="eye"/></body>
+  <body name="slider"><joint name="s" type="slide" axis="1 0 0" ref="0.4"/><geom size="0.1" mass="2"/><site name="eye"/><site name="p" pos="0 0 0.5"/></body>
   <body name="left" pos="2 0 0"><joint name="u" type="slide" axis="0 0 1"/><geom size="0.1" mass="3"/><site name="a"/></body>
   <body name="right" pos="2 0 0"><joint name="v" type="slide" axis="0 0 1"/><geom size="0.1" mass="1"/><site name="b"/></body>
   <body name="p"><joint name="p" type="slide" axis="0 1 0"/><geom size="0.1" mass="1"/></body>
@@ -24,6 +24,7 @@ FILE = f"""<mujoco model="m"><option gravity="0 0 {-G}"/><worldbody>
 <tendon>
   <spatial name="spring" stiffness="30" damping="0.5" springlength="{L0}"><site site="post"/><site site="eye"/></spatial>
   <spatial name="rope"><site site="a"/><site site="pulley"/><site site="b"/></spatial>
+  <spatial name="far"><site site="p"/><site site="eye"/></spatial>
   <fixed name="belt" frictionloss="4"><joint joint="p" coef="1"/><joint joint="q" coef="2"/></fixed>
 </tendon>
 <equality><tendon name="long" tendon1="rope"/></equality>
@@ -45,6 +46,12 @@ def test_a_spring_from_site_to_site(open_fmu):
     assert instance.get("m.spring_tendon") == pytest.approx(length, rel=1e-14)
     push = 3 * u - 30 * (length - L0) - 0.5 * rate
     assert instance.get("der(m.s_velocity)") == pytest.approx(push * (x - 0.4) / length / 2, rel=1e-12)
+
+
+def test_a_site_with_the_name_of_a_body_and_a_joint(open_fmu):
+    """The tendon runs to the site; its frame is NAME_site."""
+    instance = open_fmu("Creeps").initialize({"m.s": 0.7, "m.p": 3.0})
+    assert instance.get("m.far_tendon", "m.p_site.x", "m.p_site.z", "m.p.y") == pytest.approx([0.5, 0.7 - 0.4, 0.5, 3.0], abs=1e-14)
 
 
 def test_weights_on_a_rope(open_fmu):

@@ -64,13 +64,14 @@ URDF_CASES = {
     "unknown effort": ("", "", 'limits="stops" effort="limited"', 5, f'effort="0" of <limit>, which stands for no limit, {UNREAD} the largest force or torque of the motor'),
     "limits": ("", "", "", 4, "motion is not stopped at the limits of the joint 'hinge'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>"),
     "effort": ('effort="0"', 'effort="3"', 'limits="stops"', 4, "motors may exceed the effort of the joint 'hinge'; expected effort=\"limited\""),
-    "limits of a plane": ('"revolute"', '"planar"', QUIET, 5, f"<limit lower upper> of a floating or planar joint {UNREAD} a <stop> at each of its coordinates"),
-    "spring in a plane": ('"revolute"', '"planar"', QUIET, 6, f"<dynamics> of a floating or planar joint {UNREAD} {IN_SYSTEM}"),
-    "effort in a plane": ('"revolute"><parent', '"planar"><limit effort="4"/><parent', 'effort="limited"', 4, f"effort of a floating or planar joint {UNREAD}"),
+    "limits of a plane": ('"revolute"', '"planar"', QUIET, 5, f"<limit lower upper> of a floating, planar or spherical joint {UNREAD} a <stop> at each of its coordinates"),
+    "spring in a plane": ('"revolute"', '"planar"', QUIET, 6, f"<dynamics> of a floating, planar or spherical joint {UNREAD} {IN_SYSTEM}"),
+    "effort in a plane": ('"revolute"><parent', '"planar"><limit effort="4"/><parent', 'effort="limited"', 4, f"effort of a floating, planar or spherical joint {UNREAD}"),
     "another attribute": ("damping=", 'armature="1" damping=', QUIET, 6, f"armature of <dynamics> {UNREAD}"),
     "spring of Gazebo": ("</robot>", '<gazebo reference="hinge"><springStiffness>3</springStiffness></gazebo></robot>', QUIET, 7, f"<springStiffness> {UNREAD} spring_stiffness of <dynamics>"),
     "gravity off": ("</robot>", '<gazebo reference="rotor"><turnGravityOff>true</turnGravityOff></gazebo></robot>', QUIET, 7, f"<turnGravityOff> {UNREAD} {IN_SYSTEM}"),
     "friction of Gazebo": ("</robot>", '<gazebo reference="rotor"><mu1>0.3</mu1></gazebo></robot>', 'ground="true" limits="stops"', 7, f"<mu1> {UNREAD} ground_friction of the robot"),
+    "undeclared prefix": ('effort="0"', 'drake:acceleration="3" effort="0"/><drake:gear drake:x="1"', QUIET, 5, "<drake:gear> is read without its prefix, which the file does not define; expected xmlns:drake=\"...\" in its first element"),
     "wheel": ('<link name="stand">', '<link name="stand"><collision><geometry><cylinder radius="0.1" length="0.1"/></geometry></collision>', 'base="floating" ground="true" limits="stops"', 2, "the cylinder of the link 'stand' touches the ground at 8 points of each rim"),
 }  # fmt: skip
 
@@ -84,9 +85,31 @@ def test_warnings_of_urdf(replaced, new, attributes, line, message, tmp_path):
     assert [(number, words) for number, words in reported if words.startswith(message)] == [(str(line), words) for _, words in reported if words.startswith(message)] != []
 
 
+def test_definitions_of_xacro_do_nothing(tmp_path):
+    """With xmlns and without; calls of macros are errors."""
+    for given in ("", ' xmlns:xacro="http://www.ros.org/wiki/xacro"'):
+        text = ROTOR.replace("</robot>", '<xacro:property name="r" value="${2*pi}"/><xacro:macro name="m"><xacro:wheel/></xacro:macro></robot>')
+        reported = warnings_of("rotor.urdf", text.replace("<robot", f"<robot{given}"), QUIET, tmp_path)
+        assert reported == []
+
+
 @pytest.mark.parametrize("text", ["<mu1>0.3</mu1>", "<selfCollide>true</selfCollide>", "<springStiffness>0</springStiffness>", "<turnGravityOff>false</turnGravityOff>", "<material>Grey</material>"])
 def test_elements_of_simulators_that_do_nothing(text, tmp_path):
     assert warnings_of("rotor.urdf", ROTOR.replace("</robot>", f"<gazebo>{text}</gazebo></robot>"), QUIET, tmp_path) == []
+
+
+def test_names_in_other_alphabets(tmp_path):
+    """Letters become their code points, so that names of equal length differ."""
+    text = ROTOR.replace('"rotor"', '"腕"').replace('"stand"', '"脚"').replace('"hinge"', '"é1"')
+    assert warnings_of("rotor.urdf", text, QUIET, tmp_path) == []
+    names = re.findall(r'ScalarVariable name="r\.([^"]*)"', (tmp_path / "out" / "modelDescription.xml").read_text())
+    assert {"u00E91", "u00E91_velocity", "u8155.x", "u811A.x"} <= set(names)
+
+
+def test_a_mocap_body_stands_still(tmp_path):
+    text = WHEEL.replace("<worldbody>", '<worldbody><body name="goal" mocap="true" pos="1 2 3"/><body mocap="true"/>')
+    message = f"mocap of <body>, which stands still, {UNREAD} a <freejoint>, or a frame that inputs move in a <system> that includes the robot"
+    assert warnings_of("wheel.xml", text, "", tmp_path) == [("3", message)]
 
 
 # An attribute of an element, attributes of the <include>, and the remedy.

@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -49,10 +50,23 @@ static struct Register register_create(const char *kind) {
   return (struct Register){.kind = kind, .names = names_create(), .symbols = names_create()};
 }
 
+/* Returns the code point of the letter of another alphabet at the text, in UTF-8, and its length in bytes. */
+static unsigned letter_at(const char *text, size_t *length) {
+  unsigned char first = (unsigned char)*text;
+  size_t wanted = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+  unsigned code = first & (0xFFu >> (wanted + 1));
+  for (*length = 1; *length < wanted && ((unsigned char)text[*length] & 0xC0) == 0x80; ++*length)
+    code = code << 6 | ((unsigned char)text[*length] & 0x3F);
+  return code;
+}
+
 char *robot_symbol(const char *name) {
-  char *symbol = format_text("%s%s", isdigit((unsigned char)*name) ? "_" : "", name);
-  for (char *c = symbol; *c != '\0'; c++)
-    if (!isalnum((unsigned char)*c)) *c = '_';
+  enum { LETTER_LENGTH = sizeof "u10FFFF" - 1 };
+  char *symbol = allocate(LETTER_LENGTH * strlen(name) + 2, 1), *end = symbol;
+  if (isdigit((unsigned char)*name)) *end++ = '_';
+  for (size_t length = 1; *name != '\0'; name += length, length = 1)
+    if ((unsigned char)*name < 0x80) *end++ = isalnum((unsigned char)*name) ? *name : '_';
+    else end += snprintf(end, LETTER_LENGTH + 1, "u%04X", letter_at(name, &length));
   return symbol;
 }
 

@@ -12,7 +12,6 @@
 #include "read/meshes/package_path.h"
 #include "read/robots/description/robot_file.h"
 #include "read/xml/nodes.h"
-#include "read/xml/xml.h"
 
 const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",
                                               "floating", "planar",   "ball"};
@@ -248,16 +247,22 @@ static void read_link(struct RobotFile *urdf, xmlNodePtr node) {
   add_link(urdf, link);
 }
 
+/* True if the joint has several coordinates. */
+static bool has_several(const struct RobotJoint *joint) {
+  return joint->type == FLOATING || joint->type == PLANAR || joint->type == BALL;
+}
+
 static enum RobotJointType read_type(struct RobotFile *urdf, xmlNodePtr node) {
   char *text = required_attribute(urdf, node, "type");
-  int type = 0; /* a ball is not a type of URDF */
+  int type = 0; /* the ball of MJCF is spherical in files of Bullet */
   while (type < BALL && strcmp(text, joint_types[type]) != 0) type++;
-  if (type == BALL && *text != '\0')
-    report_error(
-        urdf->diagnostics, line_of(node),
-        "type=\"%s\" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating or planar",
-        text);
-  return type < BALL ? (enum RobotJointType)type : FIXED;
+  if (type < BALL || strcmp(text, "spherical") == 0) return (enum RobotJointType)type;
+  if (*text != '\0')
+    report_error(urdf->diagnostics, line_of(node),
+                 "type=\"%s\" of <joint> is not known; expected revolute, continuous, prismatic, fixed, floating, "
+                 "planar or spherical",
+                 text);
+  return FIXED;
 }
 
 /* Reads the axis and normalizes it; x if the file gives none. */
@@ -267,7 +272,7 @@ static void read_axis(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoint
   read_numbers(urdf, axis, "xyz", 3, joint->axis);
   double length =
       sqrt(joint->axis[0] * joint->axis[0] + joint->axis[1] * joint->axis[1] + joint->axis[2] * joint->axis[2]);
-  bool has_axis = joint->type != FIXED && joint->type != FLOATING;
+  bool has_axis = joint->type == PLANAR || (joint->type != FIXED && !has_several(joint));
   if (has_axis && !(length > 0 && isfinite(length)))
     report_error(urdf->diagnostics, line_of(axis),
                  "the <axis> of the joint '%s' has the length %g; expected a direction such as 0 0 1", joint->name,
@@ -285,8 +290,8 @@ static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoi
   if (is_limited && effort == 0)
     warn_unread(urdf, line_of(limit), "effort=\"0\" of <limit>, which stands for no limit,",
                 "the largest force or torque of the motor");
-  if (is_limited && effort > 0 && (joint->type == FLOATING || joint->type == PLANAR))
-    warn_unread(urdf, line_of(limit), "effort of a floating or planar joint", in_system);
+  if (is_limited && effort > 0 && has_several(joint))
+    warn_unread(urdf, line_of(limit), "effort of a floating, planar or spherical joint", in_system);
   if (effort > 0) joint->effort = effort;
 }
 
@@ -294,9 +299,8 @@ static void read_effort(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoi
 static void read_limit(struct RobotFile *urdf, xmlNodePtr node, struct RobotJoint *joint) {
   xmlNodePtr limit = child_of(urdf, node, "limit");
   joint->lower = joint->upper = NAN;
-  if (limit != NULL && (joint->type == FLOATING || joint->type == PLANAR) &&
-      (has_attribute(limit, "lower") || has_attribute(limit, "upper")))
-    warn_unread(urdf, line_of(limit), "<limit lower upper> of a floating or planar joint",
+  if (limit != NULL && has_several(joint) && (has_attribute(limit, "lower") || has_attribute(limit, "upper")))
+    warn_unread(urdf, line_of(limit), "<limit lower upper> of a floating, planar or spherical joint",
                 "a <stop> at each of its coordinates in a <system> that includes the robot");
   if (limit == NULL || (joint->type != REVOLUTE && joint->type != PRISMATIC)) return;
   double lower = 0, upper = 0;
@@ -321,9 +325,9 @@ static void read_dynamics(struct RobotFile *urdf, xmlNodePtr node, struct RobotJ
   double damping = number_not_negative(urdf, dynamics, "damping");
   double friction = number_not_negative(urdf, dynamics, "friction");
   double stiffness = number_not_negative(urdf, dynamics, "spring_stiffness");
-  if (joint->type == FLOATING || joint->type == PLANAR) {
+  if (has_several(joint)) {
     if (damping > 0 || friction > 0 || stiffness > 0)
-      warn_unread(urdf, line_of(dynamics), "<dynamics> of a floating or planar joint", in_system);
+      warn_unread(urdf, line_of(dynamics), "<dynamics> of a floating, planar or spherical joint", in_system);
     return;
   }
   joint->damping = damping;
@@ -368,7 +372,7 @@ static void read_joint(struct RobotFile *urdf, xmlNodePtr node) {
 static const struct Attributes attributes[] = {
     {"origin", "xyz rpy", NULL, ALWAYS_ACTS},
     {"axis", "xyz", NULL, ALWAYS_ACTS},
-    {"limit", "lower upper effort velocity", NULL, ALWAYS_ACTS},
+    {"limit", "lower upper effort velocity acceleration drake:acceleration", NULL, ALWAYS_ACTS},
     {"dynamics", "damping friction spring_stiffness spring_reference", NULL, ALWAYS_ACTS},
     {"mimic", "joint multiplier offset", NULL, ALWAYS_ACTS},
     {"mass", "value", NULL, ALWAYS_ACTS},
@@ -410,10 +414,23 @@ static void check_simulators(struct RobotFile *urdf, xmlNodePtr node) {
     if (child->type == XML_ELEMENT_NODE) check_simulators(urdf, child);
 }
 
-/* Returns the first macro or expression of xacro, which must be expanded before; NULL for none. */
+/* Returns the name of an element of xacro behind its prefix; NULL for other elements. */
+static const char *xacro_name(xmlNodePtr node) {
+  const char *name = (const char *)node->name, *prefix = node->ns != NULL ? (const char *)node->ns->prefix : NULL;
+  if (prefix != NULL) return strcmp(prefix, "xacro") == 0 ? name : NULL;
+  return strncmp(name, "xacro:", 6) == 0 ? name + 6 : NULL;
+}
+
+/* True if the element of xacro is a definition, which adds nothing to the robot. */
+static bool defines_only(const char *name) {
+  return strcmp(name, "property") == 0 || strcmp(name, "arg") == 0 || strcmp(name, "macro") == 0;
+}
+
+/* Returns the first element or expression of xacro that must be expanded before; NULL for none. */
 static xmlNodePtr find_xacro(xmlNodePtr node) {
   if (node->type != XML_ELEMENT_NODE) return NULL;
-  if (node->ns != NULL && node->ns->prefix != NULL && strcmp((const char *)node->ns->prefix, "xacro") == 0) return node;
+  const char *name = xacro_name(node);
+  if (name != NULL) return defines_only(name) ? NULL : node;
   for (const xmlAttr *given = node->properties; given != NULL; given = given->next)
     for (const xmlNode *text = given->children; text != NULL; text = text->next)
       if (text->content != NULL &&
@@ -424,6 +441,15 @@ static xmlNodePtr find_xacro(xmlNodePtr node) {
     if (found != NULL) return found;
   }
   return NULL;
+}
+
+static void report_xacro(struct Diagnostics *diagnostics, xmlNodePtr node) {
+  const char *name = xacro_name(node);
+  report_error(diagnostics, line_of(node),
+               "<%s%s> is of xacro, whose macros and expressions are not expanded here; expected plain URDF, as 'xacro "
+               "%s > robot.urdf' writes it",
+               name != NULL ? "xacro:" : "", name != NULL ? name : (const char *)node->name,
+               file_name(diagnostics->file));
 }
 
 struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
@@ -439,10 +465,7 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
         "keyframe=\"%s\" is for MJCF; expected start values by <coordinate name=\"...\" start=\"...\"/> in the "
         "<include>",
         options->keyframe);
-  if (xacro != NULL)
-    report_error(diagnostics, line_of(xacro), "%s",
-                 xacro_message(xacro->ns != NULL ? (const char *)xacro->ns->prefix : NULL, (const char *)xacro->name,
-                               diagnostics->file));
+  if (xacro != NULL) report_xacro(diagnostics, xacro);
   for (xmlNodePtr node = root->children; node != NULL && xacro == NULL; node = node->next) {
     if (is_element(node, "link")) read_link(&urdf, node);
     else if (is_element(node, "joint")) read_joint(&urdf, node);

@@ -76,6 +76,38 @@ static bool is_readable(const char *text, size_t length, struct Diagnostics *dia
   return true;
 }
 
+/* True if the text names an encoding other than UTF-8; libxml2 must read that. */
+static bool names_encoding(const struct TextScan *scan) {
+  struct TextScan name = *scan;
+  pass_after(&name, "encoding");
+  while (name.next < name.end && strchr("= \t\r\n\"'", *name.next) != NULL) name.next++;
+  return name.next < name.end && !begins(&name, "utf-8") && !begins(&name, "UTF-8");
+}
+
+/*
+ * Replaces <?xml ...?> by blanks, with a warning, where only its place or its version is wrong: after blank lines or
+ * comments, or with a version below 1.
+ */
+static void blank_declaration(char *text, size_t length, const struct Diagnostics *diagnostics) {
+  struct TextScan scan = {.next = text, .end = text + length, .line = 1};
+  while (scan.next < scan.end && (strchr(" \t\r\n", *scan.next) != NULL || begins(&scan, "<!--")))
+    if (*scan.next != '<') pass(&scan);
+    else pass_after(&scan, "-->");
+  if (!begins(&scan, "<?xml ")) return;
+  struct TextScan end = scan, version = scan;
+  pass_after(&end, "?>");
+  version.end = scan.end = end.next;
+  pass_after(&version, "version=");
+  bool is_late = scan.next != text, is_old = end.next - version.next > 2 && version.next[1] == '0';
+  if (names_encoding(&scan) || !(is_late || is_old)) return;
+  report_warning(diagnostics, scan.line,
+                 is_late ? "<?xml ...?> stands further down; expected it at the very beginning of the file, or left out"
+                         : "the first line names a version of XML other than 1.0; expected <?xml version=\"1.0\"?>, or "
+                           "no such line");
+  for (char *c = text + (scan.next - text); c < end.next; c++)
+    if (*c != '\n') *c = ' ';
+}
+
 char *source_text(const char *path, size_t *length, struct Diagnostics *diagnostics) {
   FILE *file = fopen(path, "rb");
   if (file == NULL) return NULL;
@@ -86,7 +118,10 @@ char *source_text(const char *path, size_t *length, struct Diagnostics *diagnost
   if (is_right && *length > LENGTH_LIMIT)
     report_error(diagnostics, 0, "the file is longer than %d bytes; expected a shorter one, and <for> for repetitions",
                  LENGTH_LIMIT);
-  if (is_right && *length <= LENGTH_LIMIT && is_readable(text, *length, diagnostics)) return text;
+  if (is_right && *length <= LENGTH_LIMIT && is_readable(text, *length, diagnostics)) {
+    blank_declaration(text, *length, diagnostics);
+    return text;
+  }
   release(text);
   return NULL;
 }

@@ -10,19 +10,51 @@
 #include "read/xml/schema.h"
 #include "read/xml/source_text.h"
 
-char *xacro_message(const char *prefix, const char *name, const char *file) {
-  return format_text(
-      "<%s%s%s> is of xacro, whose macros and expressions are not expanded here; expected plain URDF, as "
-      "'xacro %s > robot.urdf' writes it",
-      prefix != NULL ? prefix : "", prefix != NULL ? ":" : "", name, file_name(file));
+static bool is_undefined_prefix(const xmlError *error) {
+  return error->code == XML_NS_ERR_UNDEFINED_NAMESPACE && error->str1 != NULL && error->str2 != NULL;
 }
 
-/* Returns a message for a prefix without xmlns; NULL to keep the message of libxml2. */
-static char *meaning_of_prefix(const xmlError *error, const char *file) {
-  const char *prefix = error->str1, *name = error->str2;
-  if (error->code != XML_NS_ERR_UNDEFINED_NAMESPACE || prefix == NULL || name == NULL) return NULL;
-  if (strcmp(prefix, "xacro") == 0) return xacro_message(prefix, name, file);
-  return format_text("'%s:%s' has a prefix; expected the name alone", prefix, name);
+/* True if the error is a prefix without xmlns in a robot's file, which drop_prefixes() warns of. */
+static bool is_prefix_in_robot(const xmlError *error) {
+  const xmlParserCtxt *parser = error->ctxt;
+  return is_undefined_prefix(error) && parser != NULL && parser->myDoc != NULL && is_robot(parser->myDoc);
+}
+
+/* Returns the name after an undeclared prefix, which libxml2 leaves in it; NULL for none. */
+static const char *name_after_prefix(const xmlNode *node) {
+  const char *colon = node->ns == NULL ? strchr((const char *)node->name, ':') : NULL;
+  return colon != NULL ? colon + 1 : NULL;
+}
+
+/* Renames elements with an undeclared prefix, except those of xacro. Returns the first one's full name; NULL for none. */
+static char *drop_prefixes(xmlNodePtr node, long *line) {
+  char *first = NULL;
+  const char *name = name_after_prefix(node);
+  if (name != NULL && strncmp((const char *)node->name, "xacro:", 6) != 0) {
+    char *own = copy_text(name);
+    first = copy_text((const char *)node->name);
+    *line = line_of(node);
+    xmlNodeSetName(node, (const xmlChar *)own);
+  }
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    long other;
+    char *found = child->type == XML_ELEMENT_NODE ? drop_prefixes(child, &other) : NULL;
+    if (found == NULL || first != NULL) continue;
+    first = found;
+    *line = other;
+  }
+  return first;
+}
+
+static void warn_of_prefixes(xmlDocPtr document, const struct Diagnostics *diagnostics) {
+  long line;
+  char *name = drop_prefixes(xmlDocGetRootElement(document), &line);
+  if (name == NULL) return;
+  int length = (int)strcspn(name, ":");
+  report_warning(diagnostics, line,
+                 "<%s> is read without its prefix, which the file does not define; expected xmlns:%.*s=\"...\" in its "
+                 "first element",
+                 name, length, name);
 }
 
 /* Returns a message for an error of the XML parser in terms of the file; NULL to keep the message of libxml2. */
@@ -82,7 +114,10 @@ static void report_xml_error(void *diagnostics, xmlErrorPtr error) {
   struct Diagnostics *reported = diagnostics;
   bool is_of_parser = error->domain == XML_FROM_PARSER, is_of_prefix = error->domain == XML_FROM_NAMESPACE;
   if ((is_of_parser || is_of_prefix) && reported->errors > 0) return; /* caused by the first error */
-  char *meaning = is_of_parser ? meaning_of(error) : is_of_prefix ? meaning_of_prefix(error, reported->file) : NULL;
+  if (is_of_prefix && is_prefix_in_robot(error)) return;
+  char *meaning = is_of_parser ? meaning_of(error) : NULL;
+  if (is_of_prefix && is_undefined_prefix(error))
+    meaning = format_text("'%s:%s' has a prefix; expected the name alone", error->str1, error->str2);
   if (meaning != NULL) message = meaning;
   int length = (int)strcspn(message, "\n");
   if (error->level == XML_ERR_WARNING) report_warning(diagnostics, error->line, "%.*s", length, message);
@@ -114,6 +149,7 @@ static xmlDocPtr parse(const char *path, const char *text, size_t length, struct
   xmlFreeParserCtxt(parser);
   if (diagnostics->errors == errors) {
     if (document != NULL) lines_find(document, text, length);
+    if (document != NULL && is_robot(document)) warn_of_prefixes(document, diagnostics);
     return document;
   }
   xmlFreeDoc(document);

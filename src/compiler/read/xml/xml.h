@@ -8,9 +8,6 @@
 
 #include "base/diagnostics.h"
 
-/* Returns the message for an element of xacro, or with an expression of it; its prefix may be NULL. */
-char *xacro_message(const char *prefix, const char *name, const char *file);
-
 /* Parses the file without validation. Returns NULL after reporting an error. The caller frees the document. */
 xmlDocPtr xml_read(const char *path, struct Diagnostics *diagnostics);
 

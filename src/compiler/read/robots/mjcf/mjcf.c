@@ -202,7 +202,9 @@ static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   struct Chain chain = {.body = name, .parent = parent, .placement = placement_within(outer, &placement)};
   struct RobotLink *link = mjcf_add_link(mjcf, node, name);
   mjcf_reject(mjcf, node, "gravcomp");
-  mjcf_reject(mjcf, node, "mocap");
+  if (attribute_is(node, "mocap", "true"))
+    warn_unread(&mjcf->file, line_of(node), "mocap of <body>, which stands still,",
+                "a <freejoint>, or a frame that inputs move in a <system> that includes the robot");
   mjcf_note_placement(mjcf, name, parent, &chain.placement);
   read_joints(mjcf, node, &chain);
   mjcf_read_body(mjcf, node, link);
@@ -214,6 +216,7 @@ static void read_site(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   if (name == NULL) return;
   struct Placement placement = mjcf_placement(mjcf, node);
   placement = placement_within(outer, &placement);
+  name = mjcf_site_link(mjcf, name);
   mjcf_add_link(mjcf, node, name);
   mjcf_fix(mjcf, node, parent, name, &placement);
   mjcf_note_placement(mjcf, name, parent, &placement);
@@ -268,6 +271,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
                       .root = root,
                       .meshes = names_create(),
+                      .bodies = names_create(),
                       .placements = names_create(),
                       .angle = M_PI / 180,
                       .euler_sequence = "xyz",
@@ -291,6 +295,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
   mjcf_note_placement(&mjcf, mjcf_world, NULL, &no_displacement);
   for_each(&mjcf, "contact", true, mjcf_read_rule);
+  for_each(&mjcf, "worldbody", false, mjcf_note_bodies);
   for_each(&mjcf, "worldbody", false, read_geoms_of_world);
   for_each(&mjcf, "worldbody", false, read_world);
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);

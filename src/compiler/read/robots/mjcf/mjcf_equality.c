@@ -44,6 +44,7 @@ static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
   for (int i = 0; i < 2; i++) {
     bool is_world = names == of_bodies && i == 1 && !has_attribute(node, names[i]);
     ends->names[i] = is_world ? copy_text(mjcf_world) : required_attribute(&mjcf->file, node, names[i]);
+    if (names == of_sites) ends->names[i] = mjcf_site(mjcf, ends->names[i]);
     ends->placements[i] = mjcf_placement_of(mjcf, ends->names[i]);
     if (ends->placements[i] == NULL && *ends->names[i] != '\0')
       report_error(mjcf->file.diagnostics, line_of(node), "there is no %s '%s' for a <%s>; expected an existing name",

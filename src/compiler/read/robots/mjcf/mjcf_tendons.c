@@ -44,7 +44,7 @@ static void read_path(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon)
     transmission->site_names =
         make_room(transmission->site_names, transmission->site_count, sizeof *transmission->site_names);
     size_t last = transmission->site_count++;
-    transmission->site_names[last] = required_attribute(&mjcf->file, child, "site");
+    transmission->site_names[last] = mjcf_site(mjcf, required_attribute(&mjcf->file, child, "site"));
     if (last > 0) check_line(mjcf, child, tendon, transmission->site_names[last - 1], transmission->site_names[last]);
   }
   transmission->sites = allocate(transmission->site_count, sizeof(struct RobotLink *));

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/xml/lines.h"
+#include "read/xml/nodes.h"
 
 const char mjcf_world[] = "world";
 
@@ -14,6 +14,25 @@ struct RobotLink *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name) 
   link->line = line_of(node);
   add_link(&mjcf->file, link);
   return link;
+}
+
+void mjcf_note_bodies(struct Mjcf *mjcf, xmlNodePtr node) {
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    if (child->type != XML_ELEMENT_NODE) continue;
+    char *name = is_element(child, "body") ? attribute(child, "name") : NULL;
+    if (name != NULL) names_set(mjcf->bodies, name, copy_text(name));
+    mjcf_note_bodies(mjcf, child);
+  }
+}
+
+char *mjcf_site_link(const struct Mjcf *mjcf, char *name) {
+  bool is_taken = strcmp(name, mjcf_world) == 0 || names_find(mjcf->bodies, name) != NULL;
+  return is_taken ? format_text("%s_site", name) : name;
+}
+
+char *mjcf_site(const struct Mjcf *mjcf, char *name) {
+  char *link = mjcf_site_link(mjcf, name);
+  return mjcf_placement_of(mjcf, link) != NULL ? link : name;
 }
 
 struct RobotJoint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum RobotJointType type, char *name,

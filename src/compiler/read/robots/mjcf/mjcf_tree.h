@@ -9,6 +9,15 @@ extern const char mjcf_world[];
 /* Adds a link for an element; returns it. */
 struct RobotLink *mjcf_add_link(struct Mjcf *mjcf, xmlNodePtr node, char *name);
 
+/* Records the names of all bodies in an element. */
+void mjcf_note_bodies(struct Mjcf *mjcf, xmlNodePtr node);
+
+/* Returns the name of the link of a new site: that of the site, or NAME_site if a body has this name. */
+char *mjcf_site_link(const struct Mjcf *mjcf, char *name);
+
+/* Returns the name of the link of a site to which an element refers; the name itself if there is none. */
+char *mjcf_site(const struct Mjcf *mjcf, char *name);
+
 /* Adds a joint along z, without limits and friction. */
 struct RobotJoint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum RobotJointType type, char *name,
                                   char *parent, char *child);

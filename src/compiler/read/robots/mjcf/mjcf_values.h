@@ -46,6 +46,7 @@ struct Mjcf {
   size_t contact_count, rule_count;
   bool has_no_contacts, touches_parents; /* set by <flag> */
   bool is_off[ACTUATOR_GROUPS];          /* disabled groups of actuators */
+  struct Names *bodies;                  /* names of bodies */
   struct Names *placements; /* bodies and sites -> struct Placement in the world, with all joints at their ref */
 };
 
