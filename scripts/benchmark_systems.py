@@ -110,7 +110,7 @@ class Starts:
         return states
 
 
-restitution = np.empty(LANES)  # of the runs in heyoka's lanes; global, since heyoka copies callbacks with their closures
+restitution = np.empty(LANES)  # restitution of each run in heyoka's lanes; global, since heyoka copies callbacks with their closures
 
 
 def bounce(batch, sign, lane):

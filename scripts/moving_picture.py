@@ -12,7 +12,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from scripts.live_page.page import page_of
 
 FRAMES_PER_SECOND = 16
-WIDTH, HEIGHT = 240, 240  # of a scene, in pixels
+WIDTH, HEIGHT = 240, 240  # size of a scene in pixels
 COLORS = 48
 SYSTEMS = {"NewtonsCradle": {}, "DoublePendulum": {"theta1": 2.0, "theta2": 2.5}, "PassiveWalker": {}}
 

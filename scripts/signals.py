@@ -17,7 +17,7 @@ import numpy as np
 from .problem import Problem
 from .variables import known
 
-ORDER = 3  # of the polynomials
+ORDER = 3  # order of the polynomials
 NODES = 0.5 + 0.5 * np.array([-1.0, -(5**-0.5), 5**-0.5, 1.0])  # Lobatto nodes in [0, 1], whose quadrature is exact to order 5
 FROM_NODES = np.linalg.inv(np.vander(NODES, increasing=True))  # matrix from values at the nodes to coefficients
 SAME = 1e-10  # difference, relative to the largest value, below which values are equal
@@ -96,7 +96,7 @@ class Table:
 
     def __init__(self, times, columns):
         rises = np.flatnonzero(np.diff(times) > 0)
-        self.starts = np.concatenate([times[:1], times[rises], times[-1:]])  # of the pieces before the first row, between rows, and after the last
+        self.starts = np.concatenate([times[:1], times[rises], times[-1:]])  # starts of the pieces before the first row, between rows, and after the last
         self.coefficients = np.zeros((ORDER + 1, len(self.starts), len(columns)))
         for k, column in enumerate(columns):
             self.coefficients[0, [0, -1], k] = column.values[[0, -1]]

@@ -33,11 +33,11 @@ WORDS = ("start_values", "output", "input", "hold", "fmi_type", "fmi", "solver",
 TYPES = ("CoSimulation", "ModelExchange")
 TAKEN = ("filename", "fmi_type", "fmu_instance", "start_values", "input", "output", "set_input_derivatives")  # arguments of simulate_fmu that have other names here
 FMPY = tuple(name for name in inspect.signature(simulate_fmu).parameters if name not in TAKEN)  # options of simulate_fmu that are passed on
-ROWS = 500  # of a simulation, if neither the FMU nor the user gives a step
+ROWS = 500  # rows of a simulation, if neither the FMU nor the user gives a step
 ENERGIES = ("kineticEnergy", "potentialEnergy", "totalEnergy")
 FLAT = 15.0  # largest ratio of the magnitudes in a panel, so that no curve is flat
 LEVEL = 1e-6  # changes below this share of the magnitude are drawn as constant
-MOST_NAMES, MOST_EVENTS = 8, 100  # of a panel
+MOST_NAMES, MOST_EVENTS = 8, 100  # names and events that a panel shows
 WIDEST_TITLE = 75  # letters
 STOPPED = "-stopped.csv"  # suffix of the CSV of a simulation that stopped before its end
 

@@ -15,7 +15,7 @@ SWITCHES = "and what switches"  # in the description of the log category logEven
 OF_ALL = {"events": EVENTS, "events.first": FIRST}
 COUNTER = "events"  # variable of the FMU that counts events
 FORMS = "NAME.max, NAME.min, NAME@end, NAME@TIME, events, events.first, or of a contact or friction NAME.events, NAME.first"
-SAMPLES = 1000  # for extremes, in a run of an FMU without step size
+SAMPLES = 1000  # samples for extremes, in a run of an FMU without step size
 
 
 def items_of(given):

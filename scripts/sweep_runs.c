@@ -96,7 +96,7 @@ struct SweepRun {
 };
 
 /* Records an event of a contact or friction, from the FMU's message on it. */
-static void hear_event(const struct SweepRun *course, const char *message) {
+static void record_switch(const struct SweepRun *course, const char *message) {
   char name[1000];
   double time;
   int end = 0;
@@ -115,7 +115,7 @@ EXPORT void sweep_log(void *environment, fmi2String instance, fmi2Status status,
                       fmi2String message, ...) {
   fmi2CallbackLogger logger;
   memcpy(&logger, environment, sizeof logger);
-  if (status == fmi2OK && listener != NULL) hear_event(listener, message);
+  if (status == fmi2OK && listener != NULL) record_switch(listener, message);
   else if (status != fmi2OK) logger(NULL, instance, status, category, message);
 }
 

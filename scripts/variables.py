@@ -80,7 +80,7 @@ def near_file(path):
     """Return the end of a message about a missing file: a file of a similar name in its folder, or ""."""
     path = Path(path)
     others = sorted(path.parent.iterdir(), key=lambda other: (other.suffix == path.suffix, other.name)) if path.parent.is_dir() else []
-    beside = {other.stem: other.name for other in others}  # of one stem that with the same suffix
+    beside = {other.stem: other.name for other in others}  # other files by stem; of several, the one with the same suffix
     near = nearest(path.stem, beside)
     return f"; did you mean '{path.with_name(beside[near])}'?" if near else ""
 

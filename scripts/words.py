@@ -75,7 +75,7 @@ def comments_of(path):
 
 
 def wrong_names(source):
-    """Of code without comments and strings: names that have a word of NAMES, with the line of the first use."""
+    """Yield the names in code that have a word of NAMES, with the line of the first use. Comments and strings are ignored."""
     found = {}
     for match in re.finditer(r'"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])*\'|(?://|#)[^\n]*|/\*.*?\*/|[A-Za-z_]\w*', source, re.DOTALL):
         if match[0][0].isalpha() or match[0][0] == "_":
@@ -100,7 +100,7 @@ ITEM = r"\s*([-*]|\d+\.) "
 
 
 def paragraphs(page):
-    """Of a page's running text and lists: without code, tables and headings."""
+    """Yield the paragraphs and list items of a page with their first lines, without code, tables and headings."""
     lines, fenced = page.split("\n"), False
     text, start = [], 0
     for number, line in enumerate([*lines, ""], 1):
@@ -117,7 +117,7 @@ def paragraphs(page):
 
 
 def paragraphs_of_comment(comment):
-    """Of a comment's running text; each line that is indented further, such as a formula, is one of its own."""
+    """Yield the paragraphs of a comment with their first lines. Each line that is indented further, such as a formula, is one of its own."""
     lines = [re.sub(r"^\s*(/\*+|\*/|\* |\*$|//|#|\"\"\")|(\*/|\"\"\")$", "", line) for line in comment.split("\n")]
     lines[1:] = textwrap.dedent("\n".join(lines[1:])).split("\n")
     text, start = [], 0

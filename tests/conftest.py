@@ -28,7 +28,7 @@ def processor_seconds():
     return sum(os.times()[:4])
 
 
-known = 0.0  # at the last report
+known = 0.0  # processor time at the last report, in s
 
 
 def pytest_collection_finish():

@@ -10,7 +10,7 @@
 const NAME = /[A-Za-z_](?:\w|\.(?!\.)|\[[^\]]*\])*/g;
 const TOKEN = new RegExp(`\\s*(\\.\\.\\.|\\d+(?:\\.\\d+)?(?:e[-+]?\\d+)?|${NAME.source}|\\S)`, "y");
 
-// Returns the words of a text, in reverse order, so that the next one is the last.
+// Returns the tokens of a text in reverse order, so that pop() takes the next one.
 function tokensOf(text) {
   TOKEN.lastIndex = 0;
   const tokens = [];

@@ -21,7 +21,7 @@ from html_page import paragraphs, table
 PENDULUM = ROOT / "build" / "coupling" / "fmu" / "HingedPendulum.fmu"
 START, END, G = [0.0, 0.0, np.pi / 2, 0.0], 1.0, 9.81  # x, v, theta, omega: the rod starts horizontal, where the loop gain is -m / M
 LARGEST = 1e4  # m/s2, a thousand times the accelerations of the motion: larger ones mean divergence
-RATIOS = [0.1, 0.5, 0.9, 1.1, 2.0, 10.0]  # of m / M
+RATIOS = [0.1, 0.5, 0.9, 1.1, 2.0, 10.0]  # values of m / M
 
 
 class Hinge(Master):

@@ -54,7 +54,7 @@ class Master:
     `past` has the observations (F, x2, v2) at the last communication points, the latest first.
     """
 
-    iterations = 60  # of one communication step at most
+    iterations = 60  # at most, in a communication step
 
     def __init__(self, m1, m2, k, c, own=0.0, l0=0.0):
         self.starts = [body_on_axis(m1, own), body_on_axis(m2, own)]

@@ -21,7 +21,7 @@ from importing import minimal
 SYSTEMS = ["SimplePendulum", "PendulumCartesian", "FourBar", "Bricard", "FreeBody", "RollingDisk", "KnifeEdge", "AndrewsSqueezer"]
 END, FAST = 10.0, {"AndrewsSqueezer": 0.03}  # s; its crank turns a thousand times faster than others
 TOLERANCE, EXACT = 1e-8, 1e-13
-ROWS = 100  # of the result
+ROWS = 100  # rows of the result
 
 
 @contextmanager

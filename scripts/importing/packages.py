@@ -14,7 +14,7 @@ import numpy as np
 
 STEP = 0.01  # s
 TOLERANCE = 1e-8  # relative
-NANOSECONDS = 10**9  # of a second, libcosim's unit of time
+NANOSECONDS = 10**9  # nanoseconds in a second; libcosim counts time in them
 
 
 def fmpy(archive, kind, end, outputs, tolerance=None):

@@ -1,7 +1,7 @@
 // Shows an equilibrium near the present state, and A, B, C, D and eigenvalues there, which the worker computes when the section is opened.
 "use strict";
 
-const MOST_COLUMNS = 14; // of matrices that are shown; larger ones can be copied
+const MOST_COLUMNS = 14; // columns of the largest matrix that is shown; larger ones can be copied
 
 function addLinearization() {
   if (!description.variables.some(({ derivativeOf }) => derivativeOf >= 0)) return;

@@ -1,7 +1,7 @@
 // Matrices as arrays of rows: singular values, least squares, eigenvalues and the exponential function. Runs in the worker.
 "use strict";
 
-const SWEEPS = 60; // of Jacobi's method, and QR steps for each eigenvalue; about ten suffice
+const SWEEPS = 60; // limit for Jacobi's method, and for QR steps for each eigenvalue; about ten suffice
 const TINY = 2 ** -52; // relative rounding error
 
 const identity = (n) => Array.from({ length: n }, (_, i) => Array.from({ length: n }, (_, j) => Number(i === j)));

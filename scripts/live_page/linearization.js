@@ -1,7 +1,7 @@
 // Finds an equilibrium of the FMU, and its linearization there; see linearization.py and equilibria.py of the package. Runs in the worker.
 "use strict";
 
-const STEP = 2 ** -16; // of the differences that give the derivative of the projection, relative
+const STEP = 2 ** -16; // relative step of the differences that give the derivative of the projection
 const INDEPENDENT = 0.3; // length of a row relative to the longest one, above which a state is independent; 0.02 for coordinates
 const [NEWTON_STEPS, STEP_HALVINGS, LARGEST_STEP] = [100, 25, 0.5]; // the largest step is relative to a value or its nominal value
 const [DOWNHILL, NUDGE] = [40, 0.1]; // moves along accelerations at most, and their relative length

@@ -1,8 +1,8 @@
 // Draws the lines of a scene: rods, springs, belts, ground and so on, from point to point.
 "use strict";
 
-const COILS = 8; // of a spring
-const HATCHES = 14; // of a ground, at least
+const COILS = 8; // coils of a drawn spring
+const HATCHES = 14; // least number of hatches of a ground
 
 // Returns the points of a coil from 0 to 1 along y, with straight ends.
 function coil(radius) {
@@ -43,7 +43,7 @@ class DrawnLine {
     return [from, this.isPoint ? from : this.ends[1](sample, time, new THREE.Vector3())];
   }
 
-  // Adds the space that it takes to a box.
+  // Expands a box by the space that the line takes.
   expand(box, sample, time) {
     const [from, to] = this.at(sample, time), round = this.isRound ? from.distanceTo(to) : 0, radius = this.kind === "belt" ? this.scene.value(this.line.radius) : round;
     for (const point of this.isRound ? [from] : [from, to]) {

@@ -3,7 +3,7 @@
 
 const TICK = 16; // ms, a frame at 60 Hz
 const LONGEST_WORK = 13; // ms of steps in a tick at most, so that messages are handled in time
-const MOST_SAMPLES = 16; // of a tick at most
+const MOST_SAMPLES = 16; // largest number of samples in a tick
 const MOST_SAVED = 600; // saved states at most, for steps back
 const PREVIEW = 150; // ms for the simulation that determines the size of the view
 

@@ -19,10 +19,10 @@ class Stepped:
     """A run of an FMU."""
 
     seconds: float
-    names: list  # of the recorded variables
+    names: list  # names of the recorded variables
     rows: np.ndarray  # a row for each recorded communication point
-    steps: int  # of the solver; 0 if the FMU does not count them
-    evaluations: int  # of the equations of motion
+    steps: int  # steps of the solver; 0 if the FMU does not count them
+    evaluations: int  # evaluations of the equations of motion
     events: int
 
     def columns(self, names):

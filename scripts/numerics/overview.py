@@ -24,7 +24,7 @@ class MethodRun(NamedTuple):
 class Cell(NamedTuple):
     """A cell of the table."""
 
-    ratio: float  # of the times to the first error level; NEVER if the program does not reach it, NaN if the FMU does not
+    ratio: float  # ratio of the times to the first error level; NEVER if the program does not reach it, NaN if the FMU does not
     text: str  # shown under the pointer
 
 

@@ -12,7 +12,7 @@ from numerics.work_precision import scenarios
 
 HEADER = ["system", "simulated [s]", "compared", "reference", "tolerance", "largest error", "error / tolerance", "time [µs]"]
 LARGEST = 1e3  # error relative to the tolerance above which a result is wrong; unstable motions, such as that of FreeBody, amplify errors
-REPEATS = 3  # of which the fastest counts
+REPEATS = 3  # runs; the fastest counts
 
 DLMF = "NIST Digital Library of Mathematical Functions"
 SERIES = "Taylor series of SymPy's equations in 30 digits, local error 1e-20"

@@ -23,7 +23,7 @@ FORCE, TRACK = CART.strength[0], 0.28  # N and m
 BALANCED = CART._replace(start=np.array([0.2, 0.1, 0.0, 0.0]))  # the controllers begin near upright
 WEIGHTS, EFFORT = np.diag([20.0, 10.0, 1.0, 1.0]), 0.02  # weights of the squared states (x, theta, v, omega) and of the squared force
 LEAVING = 1e3  # weight of the squared distance beyond the track in m, relative to the scaled weight of forces
-BLOCKS, BLOCK = 20, 40  # of the prediction horizon: number of constant forces, and periods of each
+BLOCKS, BLOCK = 20, 40  # prediction horizon: number of constant forces, and periods of each
 
 
 class Plant(NamedTuple):
@@ -97,7 +97,7 @@ class Predictor:
             hessian += left.T @ inner @ left
             mixed += left.T @ inner @ right
             free, forced = a @ free, a @ forced + b @ chosen
-            self.track_free.append(free[0])  # of x at the block's end
+            self.track_free.append(free[0])  # part of x at the block's end that does not depend on the forces
             self.track_forced.append(forced[0])
         hessian += forced.T @ cost @ forced
         size = hessian.diagonal().max()

@@ -31,7 +31,7 @@ class Task(NamedTuple):
     reach: dict  # bounds of |state|, by the index of the state
     duration: float  # initial guess of T, in s
     swings: float  # periods of a sine, the initial guess of the inputs
-    intervals: int  # of constant inputs
+    intervals: int  # number of intervals with constant inputs
     points: int  # Radau points in each interval
     parameters: dict  # values by name, where they differ from those of the FMU
     has_hessian: bool  # True for a Hessian by differences of the FMU's derivatives; False for IPOPT's limited-memory BFGS, cheaper with many states
@@ -40,10 +40,10 @@ class Task(NamedTuple):
 class OptimalMotion(NamedTuple):
     """A time-optimal motion."""
 
-    times: np.ndarray  # of the intervals' boundaries, in s
+    times: np.ndarray  # times of the intervals' boundaries in s
     states: np.ndarray  # a row for each boundary
     inputs: np.ndarray  # a row for each interval
-    iterations: int  # of IPOPT
+    iterations: int  # iterations of IPOPT
 
 
 def slopes_of(unpacked, task):

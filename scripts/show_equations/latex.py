@@ -11,7 +11,7 @@ UPRIGHT = ("sin", "cos", "tan", "sinh", "cosh", "tanh")  # functions of a name w
 OPERATORS = {*UPRIGHT, "log", "exp", "min", "max"}  # functions that LaTeX knows
 DOTS = ("%s", r"\dot{%s}", r"\ddot{%s}")
 CALLS = {"der": r"\frac{\mathrm{d}}{\mathrm{d} t} %s", "diff": r"\frac{\partial %s}{\partial %s}", "sqrt": r"\sqrt{%s}", "abs": r"\left| %s \right|"}
-LINE = 75  # characters of a line of an equation, about
+LINE = 75  # approximate length of a line of an equation, in characters
 
 # Characters of texts that have a special meaning in LaTeX, or none.
 SPECIAL = {"\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "_": r"\_", "^": r"\^{}", "&": r"\&", "%": r"\%", "#": r"\#", "$": r"\$", "~": r"\~{}", "<": "$<$", ">": "$>$",
@@ -42,7 +42,7 @@ def symbol(name, dots=0):
 
 
 def number(value):
-    """Return a number; the ratio that one with many digits stands for, as in integrals."""
+    """Return a number in LaTeX, as a ratio if its digits are those of one, as in integrals."""
     mantissa, _, exponent = f"{value!r}".partition("e")
     if len(mantissa) >= 14 and not exponent:
         for below in range(3, 46):

@@ -64,8 +64,10 @@ static int start(const struct FmuLibrary *fmu, fmi2Component c) {
 
 /* Times over all runs. */
 struct Times {
-  double *taken, *least, longest; /* of the present run; the least of each step; the longest of all */
-  size_t steps;                   /* taken by all runs */
+  double *taken;  /* of each step in the present run */
+  double *least;  /* of each step, the shortest of all runs */
+  double longest; /* of all steps */
+  size_t steps;   /* number of steps of a run */
   long allocations;
 };
 

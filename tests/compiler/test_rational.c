@@ -76,7 +76,7 @@ static void test_lowest_terms(void **state) {
   }
 }
 
-/* More different functions than a polynomial has atoms. */
+/* A sum has more different functions than a polynomial may have atoms. */
 static void test_many_atoms(void **state) {
   (void)state;
   struct Expressions e = expressions_create();

@@ -76,7 +76,7 @@ class Derivation:
         potential += sum(self.symbols[c.name] ** 2 for c in system.coordinates if c.part)
         dissipation = sp.sympify(sum(map(self.convert, system.dissipations)))
         forces = [sp.sympify(-sp.diff(dissipation, vi)) for vi in v]
-        self.prescribed_power = sp.Integer(0)  # of forces whose points have prescribed motions
+        self.prescribed_power = sp.Integer(0)  # power of forces whose points have prescribed motions
         for label, force in system.forces:
             forces[[c.name for c in system.coordinates].index(label)] += self.convert(force)
         for label, force in system.cartesian_forces:

@@ -204,7 +204,7 @@ class Reference:
         state = (REAL * self.states)(*system.start)
         step, evaluations = REAL(plan.length / 1000), ctypes.c_long(0)
         rows, parts = [system.start], max(1, 12 // len(plan.actions))
-        kicked = max(1, len(plan.actions) // 100)  # of so many communication steps one has kicks
+        kicked = max(1, len(plan.actions) // 100)  # one of this number of communication steps has kicks
         for number, communication in enumerate(course(system)):
             constants = self._constants(communication, modes)
             if number == 0:

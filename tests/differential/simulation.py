@@ -16,7 +16,7 @@ from .build import Wrong
 from .system import course
 
 POINTS = 3  # number of communication points at which all available values are read
-ORDERS = 3  # of output derivatives
+ORDERS = 3  # orders of output derivatives
 
 
 class Built(fmu.Instance):

@@ -149,7 +149,7 @@ def test_an_impact_at_the_start(open_in_initialization):
 
 
 def test_no_derivative_by_the_height_of_an_impact(open_in_initialization):
-    """From slightly higher the ball starts with v, before the impact; a start below the ground is an error."""
+    """A ball that starts slightly higher has the velocity v, before the impact. A start below the ground is an error."""
     instance = open_in_initialization("HitAtTheStart")
     with pytest.raises(FMICallException):
         directional(instance, ["v"], "h")

@@ -121,7 +121,7 @@ def test_files_that_include_each_other_in_a_row(tmp_path):
 
 
 def test_endless_errors(tmp_path):
-    """Of 38,000 wrong elements lagc reports a hundred, in less than quadratic time; it shortens long texts."""
+    """lagc reports a hundred of 38,000 wrong elements, in less than quadratic time, and shortens long texts."""
     before = seconds_of_children()
     result = compile_with('<contact name="c" restitution="1">x</contact>\n' * 38000, tmp_path)
     lines = result.stderr.splitlines()

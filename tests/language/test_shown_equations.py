@@ -359,7 +359,7 @@ def test_forms_of_latex_are_those_of_pages(tmp_path, set_by_page):
 
 
 def test_the_command(tmp_path):
-    """From the package and from the clone; mistakes are lagc's messages."""
+    """The command works from the package and from the clone. Mistakes give lagc's messages."""
     package = assemble(tmp_path / "package")
     file = system_of_fmu("DoublePendulum")
     shown = {words: run(package, "show", file, *words, cwd=tmp_path) for words in ((), ("--latex",), ("--python",))}

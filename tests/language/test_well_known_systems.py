@@ -108,7 +108,7 @@ def switched(mode_at, state, stop, names):
 
 
 def later(end, begin, sign=1.0, margin=1e-9):
-    """Events of a mode whose function is 0 at the start: it is shifted at first, so that this zero is not found again."""
+    """Return an event function that is 0 at the start. It is shifted there, so that this zero is not found again."""
     return lambda t, x: sign * end(t, x) + (margin if t < begin + 1e-6 else 0.0)
 
 

@@ -51,7 +51,7 @@ def solve():
     T = kinetic([(m, (x, y)), (M, rod), (J, (t + u,)), (2, (d,))], q, v)
     rate = sum(sp.diff(rod[0], qi) * vi for qi, vi in zip(q, v))
     Q = [sp.diff(rod[0], qi) * (F - b * rate) for qi in q]
-    motion = sp.sin(2 * time) / 2  # of the drive; its acceleration is cos(2 t) for any velocity
+    motion = sp.sin(2 * time) / 2  # prescribed velocity of d; its acceleration is cos(2 t)
     constraints = [sqrt(x**2 + y**2) - l, v[3] - motion, s, u, a]
     system = System(list(q), list(v), T, g * (m * y + M * rod[1]) + k * (x - d) ** 2 / 2, Q, inputs=[F],
                     parameters=[m, M, J, l, h, k, g, b], constraints=constraints)  # fmt: skip

@@ -68,7 +68,7 @@ def systems():
 
 def least_forces(x, y, vx, vy, scale, m=2.0, g=9.81, J=0.7, R=0.8, F=1.5, tau=-0.6):
     """Forces of least norm at f = 0 and without spin, where the plate moves as a particle: the plate's Newton-Euler equations, by pinv."""
-    jacobian = np.array([[x / R, y / R, a * y / R] for a in ATTACHED])  # of the distances
+    jacobian = np.array([[x / R, y / R, a * y / R] for a in ATTACHED])  # Jacobian of the distances
     jacobian *= np.array([1, 2 * R, 2 * (1 + 0.3 * x), scale])[:, None]
     angular = (-F / m * y - g * x) / R**2  # p'' with x = R sin(p), y = -R cos(p): R p'' = F/m cos(p) - g sin(p)
     rate = (vx**2 + vy**2) / R**2  # p'^2

@@ -141,7 +141,7 @@ def test_contacts_and_friction(lagrange_fmu):  # noqa: F811
 
 @pytest.mark.parametrize("height", [0.3, 0.0])
 def test_a_held_force_of_a_contact(height, lagrange_fmu):  # noqa: F811
-    """From above the floor, too: N = m g - F. A held height of 0 leaves the force open: F changes only if the contact is open."""
+    """The search starts on or above the floor: N = m g - F. A held height of 0 does not determine the force: F changes only if the contact is open."""
     found = lagrange_fmu.equilibrium(fmu.archive("Lifted"), {"h": height}, hold={"N": 10}, vary=["F"])
     assert found.point["F"] == pytest.approx(2 * G - 10, rel=1e-12) and found.point["h"] == pytest.approx(0, abs=1e-12)
     assert found.constraints == ["floor"] and found.stability == "stable"

@@ -105,7 +105,7 @@ def test_through_friction(lagrange_fmu):  # noqa: F811
 
 
 def test_through_a_constraint(lagrange_fmu):  # noqa: F811
-    """A pendulum in x and y, by gravity and by its length, which also changes the start."""
+    """Gradient of a pendulum in x and y with respect to gravity and to its length, which also changes the start."""
 
     def x(l, g):
         angle = mpmath.atan2(3, 4)

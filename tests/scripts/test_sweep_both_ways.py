@@ -167,7 +167,7 @@ def test_events_of_each_contact_and_friction(sweep):
 
 
 def test_events_of_a_collision_chain(sweep):
-    """Of four balls that touch in a row the first is hit: all contacts between them switch at that time, and at no other."""
+    """The first of four balls that touch in a row is hit. All contacts between them switch at that time, and at no other."""
     balls = "".join(f'<coordinate name="x{i}" velocity="v{i}" start="{place}"/><particle mass="1" x="x{i}"/>' for i, place in enumerate((-1, 0, 1, 2)))
     contacts = "".join(f'<contact name="c{i}" gap="x{i + 1} - x{i} - {0.5 if i == 0 else 1}" restitution="1"/>' for i in range(3))
     build_systems("recorded-chain", {"Chain": f'<system name="Chain">{balls}{contacts}</system>'})

@@ -155,7 +155,7 @@ def test_no_wall_is_passed(name, open_fmu):
     marks = [start, *(turn - width * mp.mpf(2) ** k for k in range(12, -12, -2) if turn - width * 2**k > start), turn]
     back = 2 * travel_time(potential, mp.mpf("0.5"), marks)
     for tolerance, x, v in outcomes(open_fmu(name), float(back) + 1):
-        rounding = 1e-15 / width  # of x, in units of the width
+        rounding = 1e-15 / width  # rounding error of x in units of the width
         assert x == pytest.approx(start - 1, abs=100 * tolerance + rounding)
         assert v == pytest.approx(-1, abs=100 * tolerance + rounding)
 

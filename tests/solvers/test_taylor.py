@@ -16,7 +16,7 @@ from references import exact_series
 from systems_in_sympy import DEFINITIONS, system
 from test_motion import largest_error
 
-LENGTH = 24  # of a series in the saved state
+LENGTH = 24  # coefficients of a series in the saved state
 ORDER = 12
 
 SYSTEMS = [name for name in DEFINITIONS if fmu.description(name) and name in fmu.all_names()

@@ -481,7 +481,7 @@ def test_gyrocompass(open_fmu):
 
 
 def test_gyrocompass_that_turns_fast(open_fmu):
-    """J alpha'' = J (W cos)^2 sin(alpha) cos(alpha) - H W cos sin(alpha) - b alpha'."""
+    """The motion obeys J alpha'' = J (W cos)^2 sin(alpha) cos(alpha) - H W cos sin(alpha) - b alpha'."""
     J, C, W, latitude, b = 0.7, 0.9, 1.3, 0.4, 0.2
     north = W * np.cos(latitude)
     H = C * (5 + north * np.cos(0.5))

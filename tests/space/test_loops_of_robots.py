@@ -97,7 +97,7 @@ def stewart():
 
 # Two legs of a running robot. Each has a stiff leaf spring in the shin and one at the heel, which a rod connects with the thigh. A crank moves the
 # foot by another rod. The rods are massless distance constraints.
-BONES = {  # of each joint: its parent, its position there, its axis, mass and centre of its link
+BONES = {  # for each joint its parent, position and axis, then mass and centre of its link
     "roll": (None, (0.02, 0.135, 0), "1 0 0", 1.8, "-0.02 0 -0.04"),
     "yaw": ("roll", (0, 0, -0.07), "0 0 1", 1.2, "0 0 -0.03"),
     "pitch": ("yaw", (0, 0, -0.09), "0 1 0", 5.5, "0.06 0.03 0"),

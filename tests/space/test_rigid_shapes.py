@@ -315,7 +315,7 @@ def test_balls_that_meet():
                     rims.append((place, speed, spin))
                 momenta.append((*linear, *angular, energy))
             assert momenta[1][:6] == pytest.approx(momenta[0][:6], abs=1e-12) and momenta[1][6] < 0.95 * momenta[0][6]
-            # Values at separation, 1 - t ago; t follows from the time at which the balls touched.
+            # The balls separated 1 - t before the end. At that time their distance was the sum of the radii, which gives t.
             (a, va, wa), (b, vb, wb) = rims
             away, speed = a - b, va - vb
             back = np.roots([speed @ speed, -2 * speed @ away, away @ away - 0.04]).real.min()

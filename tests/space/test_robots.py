@@ -49,7 +49,7 @@ CART = f"""<robot name="RobotCart">
   <joint name="hinge" type="revolute"><origin xyz="0 0 0.2"/><parent link="cart"/><child link="pole"/><axis xyz="1 0 0"/><limit lower="-1"/></joint>
 </robot>
 """
-# A block on a slope with sine 0.6 and cosine 0.8, with damping and friction; and a disk with both, increased by a mimicking one.
+# A block on a slope with sine 0.6 and cosine 0.8, and a disk, both with damping and friction. The mimicking joint adds to those of the disk.
 LOSSES = f"""<robot name="RobotLosses">
   <link name="floor"/>
   <link name="block"><inertial><mass value="2"/>{BALL}</inertial></link>

@@ -86,7 +86,7 @@ def allow_calls(monkeypatch, owner, name, most):
 
 
 def work(t, *at):
-    """Work of the damper and the force on the oscillator: the change of its energy."""
+    """Return the work of damper and force on the oscillator, which is the change of its energy."""
     m, k = at[:2]
     energies = [(m * mpmath.diff(lambda s: oscillation(s, *at), when) ** 2 + k * oscillation(when, *at) ** 2) / 2 for when in (mpmath.mpf(t), mpmath.mpf(0))]
     return energies[0] - energies[1]

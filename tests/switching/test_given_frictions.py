@@ -176,7 +176,7 @@ def test_in_model_exchange(body):
 
 
 def test_a_driven_body_carries_the_friction_of_another(open_fmu):
-    """From 1 s on the drive of the second body carries the friction of the first, 5 N; from 2 s on also its own inertia force of 1 N."""
+    """From 1 s on the drive of the second body carries the friction of the first, 5 N. From 2 s on it also carries its own inertia force of 1 N."""
     instance = open_fmu(name_of("Between", "taylor")).initialize()
     others = {time: other for time, other in instance.run(3, 0.125, "other")}
     assert [others[time] for time in (0.5, 1.5, 2.5)] == pytest.approx([0, -5, -4], abs=1e-12)

@@ -91,7 +91,7 @@ def test_a_crest_rises(method, step):
 @EVERY
 @STEPS
 def test_flow_turns_round(method, step):
-    """Of p = -w^2: t = 4 (1 - w) - 8 log((1 + w/2)/(1 + 1/2)) up to p = 0; then the equation of a weir."""
+    """With p = -w^2, t = 4 (1 - w) - 8 log((1 + w/2)/(1 + 1/2)) up to p = 0. The equation of a weir follows."""
     passes = 4 - 8 * np.log(1.5)
     time, p = motion("Orifice", method, step, 10.0, "p")
     w = [float(mpmath.findroot(lambda w: 4 * (1 - w) + 8 * mpmath.log((1 + w / 2) / 1.5) - t, 0.5)) if t < passes else 0 for t in time]

@@ -461,7 +461,7 @@ def test_events_that_never_happen(event, message, tmp_path):
 
 
 def test_a_sign_is_an_expression_that_passes_0(open_fmu):
-    """By default an event is the way down, at t = 1.5 of 1.5 - t; the way up is none."""
+    """By default an event is a falling zero, as of 1.5 - t at t = 1.5. A rising zero is none."""
     fmu.build_systems("samples-signs", {"SignTrigger": """<system name="SignTrigger">
   <coordinate name="x" velocity="v" unit="m" start="1.5" velocityStart="-1"/><particle mass="1" x="x"/><mode name="down"/><mode name="up"/>
   <event when="sign(x)"><set mode="down">down + 1</set></event>

@@ -43,8 +43,8 @@ class Planar:
     gravity: float = GRAVITY
     torque: tuple = (0, 0.0)  # (body, torque in N m)
     spring: tuple | None = None  # (body, its point at the start, point of the ground, stiffness in N/m, natural length in m)
-    damping: float = 0.0  # of the spring, in N s/m
-    drag: float = 0.0  # of a single mass point, in N s/m
+    damping: float = 0.0  # damping of the spring in N s/m
+    drag: float = 0.0  # drag of a single mass point in N s/m
 
     def start_energy(self):
         rows = [[np.array([*body.centre, 0.0]), np.array([*body.velocity, body.rate])] for body in self.bodies]

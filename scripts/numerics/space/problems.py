@@ -23,8 +23,8 @@ class Link:
     joint: str  # "hinge", "slide", "ball" or "free"
     above: int | None = GROUND  # index of the parent
     point: tuple = (0.0, 0.0, 0.0)  # position of the joint
-    axis: tuple = (0.0, 0.0, 1.0)  # of the joint
-    velocity: tuple = (0.0, 0.0, 0.0)  # of the centre of mass, in m/s
+    axis: tuple = (0.0, 0.0, 1.0)  # axis of the joint
+    velocity: tuple = (0.0, 0.0, 0.0)  # velocity of the centre of mass in m/s
     angular_velocity: tuple = (0.0, 0.0, 0.0)  # in rad/s
     motor: float = 0.0  # inertia of the drive, reduced to the joint, in kg m2
     friction: float = 0.0  # viscous, in N m s/rad

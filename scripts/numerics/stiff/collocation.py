@@ -16,8 +16,8 @@ from scipy.linalg import lu_factor, lu_solve
 from references import solve
 
 Extended = np.longdouble
-TOLERANCE = 1e-13  # of the last two Legendre coefficients, in units of max(1, |state|)
-ITERATION_LIMIT = 12  # of Newton's method; a step that needs more is shortened
+TOLERANCE = 1e-13  # bound of the last two Legendre coefficients, in units of max(1, |state|)
+ITERATION_LIMIT = 12  # iterations of Newton's method; a step that needs more is shortened
 
 
 @functools.cache

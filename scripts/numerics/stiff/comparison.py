@@ -26,7 +26,7 @@ class Sample:
     """Time and error of a run."""
 
     problem: str
-    way: str  # of communication
+    way: str  # way of communication
     method: str
     tolerance: float  # or the number of fixed steps
     seconds: float

@@ -13,7 +13,7 @@ from numerics.mechanisms.problems import GROUND, Body, Joint, Planar
 from numerics.programs import with_time_limit, silence
 
 PATIENCE = 5.0  # s, after which a run is stopped
-STEPS = [100, 300, 1000, 3000, 10000, 30000, 100000, 300000]  # of exudyn, whose implicit methods have no error control
+STEPS = [100, 300, 1000, 3000, 10000, 30000, 100000, 300000]  # numbers of steps of exudyn, whose implicit methods have no error control
 
 
 def scipy_method(method):

@@ -15,7 +15,7 @@ from numerics.driver import POINTS, changing_input, description_of, step
 from numerics.stiff.collocation import extended_right_side, trajectory
 
 REFERENCES = ROOT / "build" / "report" / "references"
-STAGES = (12, 9)  # of the reference, and of its check
+STAGES = (12, 9)  # stages of the reference, and of its check
 # Method and tolerance of the reference and of its check, for systems without a derivation by SymPy; limit of time in s for each.
 # Below 1e-10 rounding errors dominate bdf.
 BY_SOLVERS, LIMIT = (("radau", 1e-11), ("bdf", 1e-10)), 200

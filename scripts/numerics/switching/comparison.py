@@ -14,7 +14,7 @@ from numerics.switching.problems import GROWING, PROBLEMS
 from numerics.times import ratio, take_turns, time_to
 
 TOLERANCES = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
-STEPS = [1000, 3000, 10000, 30000, 100000]  # of MuJoCo, multiples of POINTS
+STEPS = [1000, 3000, 10000, 30000, 100000]  # numbers of steps of MuJoCo, multiples of POINTS
 COUNTS = [10, 30, 100, 300, 1000]  # numbers of events
 TOLERANCE, LENGTH = 1e-8, 1e-3  # tolerance, and step of MuJoCo in s, of the comparison against the number of events
 LEVELS = [1e-4, 1e-6, 1e-8]  # errors at which times are compared

@@ -12,7 +12,7 @@ from closed_forms import pendulum_angle, pendulum_half_period
 from fmu import start_values
 from numerics.driver import POINTS
 
-DIGITS = 30  # of the closed forms
+DIGITS = 30  # digits of the closed forms
 
 
 @dataclass

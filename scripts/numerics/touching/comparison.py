@@ -11,7 +11,7 @@ from numerics.touching.peers import Drake, DrakeQuadruped, Fmu, FmuQuadruped, Mu
 from numerics.touching.problems import PROBLEMS
 
 STEPS = [1e-2, 2e-3, 1e-3, 2e-4, 1e-4]  # s, of MuJoCo and Drake
-TOLERANCES = [1e-6, 1e-8, 1e-10]  # of the FMU with rigid contacts
+TOLERANCES = [1e-6, 1e-8, 1e-10]  # tolerances of the FMU with rigid contacts
 # Settings of compliant contacts: the approximate penetration in m, and a thousandth of the creep velocity in m/s.
 SOFTNESS = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
 METHODS = ["FMU, rigid", "FMU, compliant", "MuJoCo", "Drake"]

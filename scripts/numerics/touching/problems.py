@@ -26,7 +26,7 @@ class Touching:
     place: Callable  # function of time that returns x, y and the height above contact, in m
     rigid: str  # name of the FMU with rigid contacts
     soft: str | None  # name of the FMU with compliant contacts; None if their law has no restitution
-    slope: float = 0.0  # of the ground, along x, in rad
+    slope: float = 0.0  # slope of the ground along x, in rad
     restitution: float = 0.0
     height: float = 0.0  # start height above contact, in m
 

@@ -15,7 +15,7 @@ from systems_in_sympy import system
 
 FOLDER = ROOT / "build" / "report" / "odeint"
 FLAGS = ["-O3", "-march=native", "-std=c++17"]
-BUDGET = 0.5  # s of repeated runs, of which the fastest counts
+BUDGET = 0.5  # s in which a run is repeated; the fastest counts
 
 PROGRAM = """#include <array>
 #include <chrono>

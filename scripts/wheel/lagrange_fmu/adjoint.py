@@ -36,7 +36,7 @@ class Phase:
     """A phase of smooth motion, between events and kinks of inputs."""
 
     saved: object  # the FMU state at its begin, with the modes of the phase
-    times: list  # of the steps: one more than steps
+    times: list  # ends of the steps: one more than steps
     steps: list  # dense outputs of SciPy
 
     def states(self):

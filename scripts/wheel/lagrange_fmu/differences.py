@@ -10,7 +10,7 @@ from .problem import Problem
 CENTRAL = ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12))
 FORWARD = ((0, -25 / 12), (1, 4), (2, -3), (3, 4 / 3), (4, -1 / 4))
 BACKWARD = tuple((-steps, -weight) for steps, weight in FORWARD)
-SECOND_ORDER = {CENTRAL: {-1: -1 / 2, 1: 1 / 2}, FORWARD: {0: -3 / 2, 1: 2, 2: -1 / 2}, BACKWARD: {0: 3 / 2, -1: -2, -2: 1 / 2}}  # on points of the rule, for the error
+SECOND_ORDER = {CENTRAL: {-1: -1 / 2, 1: 1 / 2}, FORWARD: {0: -3 / 2, 1: 2, 2: -1 / 2}, BACKWARD: {0: 3 / 2, -1: -2, -2: 1 / 2}}  # on the points of each rule; differences from it estimate its error
 
 
 def rules_within(value, step, limits):

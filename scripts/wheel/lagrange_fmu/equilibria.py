@@ -47,7 +47,7 @@ class Equilibrium:
     point: dict  # states, inputs and varied values by name
     outputs: dict  # outputs by name
     linearization: Linearization | None  # at the point; None where the system switches there, as for friction at its limit
-    eigenvalues: np.ndarray  # of its A; empty without a linearization
+    eigenvalues: np.ndarray  # eigenvalues of its A; empty without a linearization
     stability: str  # "stable" if all real parts are negative, "unstable" if one is positive, else "undecided", as without damping
     constraints: list[str]
 
@@ -63,7 +63,7 @@ def stability_of(matrix):
     """Return the eigenvalues of a matrix, and the stability by their real parts, which count as 0 within the errors of their condition numbers."""
     eigenvalues, vectors = np.linalg.eig(matrix)
     with np.errstate(over="ignore"):  # infinite where eigenvectors are parallel
-        conditions = np.linalg.norm(np.linalg.pinv(vectors, rcond=0.0), axis=1)  # of right eigenvectors of length 1
+        conditions = np.linalg.norm(np.linalg.pinv(vectors, rcond=0.0), axis=1)  # condition numbers, for right eigenvectors of length 1
     error = np.linalg.norm(matrix) * np.minimum(PERTURBED * conditions, DOUBLE)
     is_stable = (eigenvalues.real < -error).all()
     return eigenvalues, "unstable" if (eigenvalues.real > error).any() else "stable" if is_stable else "undecided"

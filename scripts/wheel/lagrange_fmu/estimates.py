@@ -17,7 +17,7 @@ from scipy.stats import t as student
 
 from .problem import Problem
 
-PROBABILITY = 0.95  # of the confidence intervals
+PROBABILITY = 0.95  # probability of the confidence intervals
 FAR, SIGNIFICANT = 2.0, 1e-3  # a misfit: root mean square above FAR times the stated noise, with a probability below SIGNIFICANT
 CORRELATED, ENOUGH = 0.5, 20  # autocorrelation of residuals that is worth a remark; pairs of rows that are enough to estimate it
 AT_LIMIT = 1e-2  # distance to a limit, in standard deviations, within which a value is at the limit

@@ -18,8 +18,8 @@ from .calls import checked
 from .model_exchange import opened
 from .problem import Problem
 
-STEP = 1e-3  # of the differences, relative: errors of truncation and rounding are both about 1e-12
-HALVINGS = 8  # of the step at most; rounding errors are then 3e-10
+STEP = 1e-3  # relative step of the differences: errors of truncation and rounding are both about 1e-12
+HALVINGS = 8  # largest number of halvings of the step; rounding errors are then 3e-10
 COORDINATE, OTHER = 0.02, 0.3  # length of a row relative to the longest one, above which a state is independent: coordinates are preferred
 UNEVEN = 1e-6  # relative difference of P^2 and P above which a mode has switched
 

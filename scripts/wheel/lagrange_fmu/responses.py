@@ -16,7 +16,7 @@ POINTS = 400  # number of points of a default grid
 BEYOND = 10.0  # factor by which default frequencies extend beyond those of the poles on both sides
 DECAYS, PERIODS = 7.0, 6.0  # time constants, or periods, of the slowest pole in the default time
 LARGEST_RATIO = 1e4  # poles smaller than the largest one by more than this factor do not count for the default time
-TERMS = 18  # of the Taylor series, for a norm of at most 1/2: the rest is below 1e-22
+TERMS = 18  # terms of the Taylor series, for a norm of at most 1/2: the rest is below 1e-22
 SMALL = 1e-7  # poles below this share of the largest one count as integrators
 
 

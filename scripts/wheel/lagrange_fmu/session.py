@@ -28,7 +28,7 @@ def _release(folder, instances):
     shutil.rmtree(folder, ignore_errors=True)
 
 
-ARGUMENTS = "start_values", "fmi", "solver", "tolerance"  # of start(), beside the names of variables
+ARGUMENTS = "start_values", "fmi", "solver", "tolerance"  # arguments of start() beside the names of variables
 
 
 def _instantiate(folder, description, logger, has_events):

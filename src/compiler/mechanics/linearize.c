@@ -52,7 +52,7 @@ static struct LinearizationSeries expansion_create(const struct Model *model) {
   for (size_t list = 0; list < 4; list++)
     for (size_t i = 0; i < lists[list]->count; i++)
       set_value(&expansion, lists[list]->items[i].node, point_of(model, lists[list]->items[i].node));
-  for (size_t i = 0; i < model->modes.count; i++) /* which keep their start values */
+  for (size_t i = 0; i < model->modes.count; i++) /* modes keep their start values */
     set_value(&expansion, model->modes.items[i].node, model->modes.items[i].start_expression);
   return expansion;
 }

@@ -30,8 +30,8 @@ struct Program {
   struct IrFunction *ir_functions[IR_FUNCTION_COUNT]; /* NULL for a function that the system does not need */
   struct ResultGroups groups;
   /*
-   * Of each result that leads a group: the code of the whole group. result_along, of outputs and calculated
-   * parameters: the directional derivative of the one variable; NULL for others.
+   * result[]: the code of a group, at the result that leads it. result_along[]: the directional derivative of an
+   * output or a calculated parameter. NULL for others.
    */
   struct IrFunction **result, **result_along;
   struct SeriesProgram *series, *output_series;

@@ -33,7 +33,7 @@ struct LinearForm {
 
 struct Atom {
   Node node;      /* in the condition */
-  Node indicator; /* whose sign it has */
+  Node indicator; /* the atom has its sign */
   size_t line;
   double factor, zero; /* the indicator is factor (u - zero) */
 };

@@ -31,7 +31,7 @@
  */
 static const double parting_in_error_bound = 1e3;
 
-/* Relative to the largest free acceleration: the rounding error of an acceleration that other contacts keep at 0. */
+/* Rounding error of an acceleration that other contacts keep at 0, as a share of the largest free acceleration. */
 static const double rounded_acceleration = 1e-12;
 
 /* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */

@@ -40,7 +40,7 @@ static const double equal_share = 1e-9;
  */
 static const double largest_penetration = 1e-9;
 
-/* Relative to the largest coordinate: start values with four digits penetrate a contact by no more. */
+/* Largest penetration by start values with four digits, as a share of the largest coordinate. */
 static const double rounded_start = 1e-4;
 
 /*
@@ -49,7 +49,7 @@ static const double rounded_start = 1e-4;
  */
 static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
 
-/* Relative to the largest rate of the gap in this event: impulses by iteration may leave smaller closing rates. */
+/* Impulses by iteration may leave closing rates below this share of the gap's largest rate in the event. */
 static const double unresolved_share = 1e-6;
 
 /* Smaller speeds have no direction: their squares are close to underflow. */

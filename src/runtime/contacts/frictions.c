@@ -26,10 +26,10 @@ static const double least_certainty = 4.0;
 
 const double sticking_rate_share = 1e-6;
 
-/* Relative to the largest constraint force: smaller forces may be left by cancellation. */
+/* Forces below this share of the largest constraint force may be left by cancellation. */
 static const double negligible_force = 1e-12;
 
-/* Relative to the forces while the friction sticks: larger forces while it slides are those of a jam. */
+/* Ratio of the forces while a friction slides to those while it sticks, beyond which it is jammed. */
 static const double jammed_force = 1e6;
 
 static const char neither[] = "a friction chatters";

@@ -17,7 +17,7 @@
 /* Impulses up to which all combinations are tried: at most 3^8 = 6561. */
 enum { MOST_IMPULSES = 8 };
 
-/* Relative to the largest impulse, but at least to 1: violations below this are rounding errors. */
+/* Violations below this share of the largest impulse (or of 1, if that is larger) are rounding errors. */
 static const double rounded_impulse = 1e-9;
 
 /* Scaled such that W_ii = 1 for each impulse, and to a largest rate of 1. */

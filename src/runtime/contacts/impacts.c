@@ -40,7 +40,7 @@ static const double least_gain = 1e-13;
  */
 static const double differing_share = 1e-8;
 
-/* Relative to the largest velocity: impacts at lower rates are rounding errors at rest. */
+/* Impacts at rates below this share of the largest velocity are rounding errors at rest. */
 static const double resting_share = 1e-9;
 
 /*

@@ -35,7 +35,7 @@ const char *evaluate_rate_without_value(struct Instance *instance) {
   const size_t first = 2 * lagrangian.coordinate_count;
   double *derivative = instance->work;
   if (lagrangian.derivatives == NULL || lagrangian.derivatives(&point, derivative) != 0) return NULL;
-  if (!are_finite(derivative, first)) return NULL; /* from which rates follow */
+  if (!are_finite(derivative, first)) return NULL; /* rates of first-order states depend on these */
   for (size_t i = first; i < lagrangian.state_count; i++)
     if (!isfinite(derivative[i])) return evaluate_name(VARIABLE_STATE, i);
   return NULL;

@@ -35,7 +35,7 @@ void evaluate_advance_inputs(struct Instance *instance, double end) {
   instance->fmu_state->changed = CHANGED_COURSE;
 }
 
-/* Relative to an input, or 1: what rounding may take a prescribed input beyond a limit. */
+/* Largest excess of a prescribed input over a limit by rounding, relative to the input or 1. */
 static const double rounded_excess = 1e-12;
 
 static double clamp(const struct ScalarVariable *variable, double value) {

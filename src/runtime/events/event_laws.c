@@ -18,7 +18,7 @@ static bool holds_at_times(const char *constraint) {
   return is_switched;
 }
 
-/* Relative to the radii: the distance of a ball's centre from the other shape at which a solver stops. */
+/* Distance of a ball's centre from the other shape at which a solver stops, relative to the radii. */
 static const double nearest_centre = 1e-5;
 
 static bool explain_ball(struct Instance *instance, enum Status status, double time) {

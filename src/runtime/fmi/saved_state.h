@@ -16,7 +16,7 @@ enum Status saved_state_free(struct Instance *instance, void **state);
 /* Returns the bytes of a state. */
 enum Status saved_state_size(struct Instance *instance, const void *state, size_t *size);
 
-/* Writes a state to bytes[size]; an error if they are too few. */
+/* Writes a state to bytes[size]. Returns an error if size is too small. */
 enum Status saved_state_write(struct Instance *instance, const void *state, void *bytes, size_t size);
 
 /* Reads a state from bytes[size] into memory as saved_state_get() does; an error if they are damaged. */

@@ -358,7 +358,7 @@ static size_t find_vanishing(struct Instance *instance, double time, double *sta
   if (evaluate_prepare(instance) != STATUS_DONE || !has_value) return lagrangian.constraints.count;
   while (found < lagrangian.constraints.count &&
          (work.slope[found] == 0.0 || !(work.first_slope[found] <= vanishing * work.slope[found])))
-    found++; /* that of an open contact is 0 everywhere */
+    found++; /* the derivative of an open contact is 0 everywhere */
   return found;
 }
 

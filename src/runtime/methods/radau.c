@@ -32,7 +32,7 @@
 /* Fraction of the tolerance for one step: errors of many steps add up (tests/solvers/test_motion.py). */
 static const double radau_safety = 0.05;
 
-/* Relative to the time: in a shorter first step, rounding would outweigh the change. */
+/* Shortest first step relative to the time: in a shorter one, rounding would outweigh the change. */
 static const double shortest_first_step = 1e-12;
 
 /* Newton iterations per step, attempts per step, and steps without failure before the order may rise. */

@@ -19,7 +19,7 @@
 
 #include "planes/pivoting.h"
 
-/* Steps at most; few suffice once the pieces are right. */
+/* Largest number of Newton steps; a few suffice once the active pieces are right. */
 enum { NEWTON_LIMIT = 60 };
 
 /*

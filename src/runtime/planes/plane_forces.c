@@ -15,7 +15,7 @@
 #include "evaluation/services.h"
 #include "planes/cone_impulses.h"
 
-/* Relative to the largest acceleration: accelerations, also of forces, below this are rounding errors. */
+/* Accelerations, also those by forces, are rounding errors below this share of the largest one. */
 static const double least_force_share = 1e-9;
 
 /* With the rows of `impulses`: accelerations without these forces, the forces, and the accelerations with them. */

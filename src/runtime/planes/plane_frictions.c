@@ -90,7 +90,7 @@ static bool follow_given(struct Resolution *resolution, const struct PlaneState 
   return true;
 }
 
-/* Handles a friction that loses its force, or has one again. True if its mode changes. */
+/* Handles a friction whose force vanishes, or acts again. True if its mode changes. */
 static bool change_force(struct Resolution *resolution, const struct PlaneState *state) {
   if (state->is_free != state->has_force) return false;
   if (!state->has_force) plane_free(resolution, state);

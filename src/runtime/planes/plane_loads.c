@@ -18,10 +18,10 @@
 /* Switches of a friction in an event up to which it may share: its limit may change with the contact forces. */
 enum { SHARE_LIMIT = 5 };
 
-/* Relative to its limit: frictions within this of the limit begin to slide, if some must. */
+/* If some frictions must slide, those begin whose force is within this share of the limit. */
 static const double share_at_limit = 1e-9;
 
-/* Relative to the largest limit: frictions with smaller limits are weak. */
+/* Frictions are weak if their limit is below this share of the largest one. */
 static const double weak_share = 0.01;
 
 /* The distribution of one load among planes. */
@@ -106,7 +106,7 @@ static void fill_load(const struct PlaneLoads *loads, struct SharedLoad *load) {
   }
 }
 
-/* Applies the forces that were found. slides: those at their limits begin to slide against them. */
+/* Applies the forces that were found. slides: frictions at their limits begin to slide against their forces. */
 static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad *load, bool slides) {
   size_t next = 0;
   for (size_t i = 0; i < loads->resolution->switches->plane_count; i++) {

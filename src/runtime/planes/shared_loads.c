@@ -22,7 +22,7 @@
 /* Newton steps at most. */
 enum { CENTRE_STEPS = 1000 };
 
-/* Relative to the largest pivot: smaller ones count as 0, as sines below 1e-6 do in saddle.h. */
+/* Pivots below this share of the largest one count as 0, as sines below 1e-6 do in saddle.h. */
 static const double least_jacobian_row_share = 1e-6;
 
 /* In units of the limits: margins below the first are rounding errors, and forces exceed limits by up to the second. */

@@ -20,5 +20,5 @@ struct Quantity {
   struct NumberFactor factor;
   bool literal;    /* made of plain numbers: takes the unit of the quantity that it is added to or compared with */
   Node at_instant; /* for <set>: a definition with floor, ceil, round and mod as plain values; ZERO without pieces */
-  Node whole;      /* the same with all pieces as plain values */
+  Node whole;      /* the same with all piecewise functions as plain values */
 };

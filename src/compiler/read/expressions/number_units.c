@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "read/names/definitions.h"
 
-/* Of two factors keeps the one with more digits, which is more likely a measured quantity: 9.81 rather than 2. */
+/* Returns the factor with more digits, which is more likely a measured quantity: 9.81 rather than 2. */
 struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFactor second) {
   if (first.text == NULL) return second;
   return second.text != NULL && strlen(second.text) > strlen(first.text) ? second : first;

@@ -307,7 +307,7 @@ static void connect_transmissions(struct Connection *connection) {
   for (size_t i = 0; i < robot->actuator_count; i++) {
     struct Actuator *actuator = &robot->actuators[i];
     if (actuator->transmission.site_count > 0 || actuator->transmission.terms->joint != NULL)
-      continue; /* that of a tendon, already resolved */
+      continue; /* the link of a tendon is already resolved */
     connect_transmission(connection, &actuator->transmission, "actuator", actuator->name, "", actuator->line);
   }
 }
