@@ -12,7 +12,7 @@ let shipped, pulled = null, active; // variants: as shipped, with inputs that pu
 let values = [new Map(), new Map()]; // settings of each FMU, by the index of the variable
 let time = 0, speed = 1, playing = false, due = 0, lastTick = 0; // due: s that are still to be simulated; lastTick: in ms
 let period = 0; // s between points of the section; 0 for none
-let ghostKind = "none", exactGhost = null, linearGhost = null; // the second run, and those that are created once
+let ghostKind = "none", exactGhost = null, linearGhost = null; // the second run; exact and linear ones are created once, and kept
 let linearizer = null; // the FMU with which equilibria are found
 
 const post = (name, content = {}, transfer = []) => self.postMessage({ name, ...content }, transfer);

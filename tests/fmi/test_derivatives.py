@@ -69,7 +69,7 @@ def test_directional_derivatives_by_differences(name, open_fmu):
         start |= dict(lMin=0.1, lMax=10.0, track=5.0)  # between its stops
 
     def values_at(point):
-        if is_constrained:  # which leaves the state off the constraints
+        if is_constrained:  # put() leaves the state off the constraints
             instance.put(point)
         else:
             instance.reset().initialize(point)

@@ -24,7 +24,7 @@ SYSTEM = """<system name="Shown" description="Rod" author="A. Author &amp; B. Au
   <state name="heat" unit="K" displayUnit="degC" start="293.15" rate="0"/>
   <output name="speed" unit="rad/s" displayUnit="rpm">omega[1] + n</output>
 </system>"""
-# Value in SI units of one of each unit.
+# The value of each unit in SI units.
 UNITS = {"mm": 1e-3, "g": 1e-3, "cm": 1e-2, "rpm": 2 * math.pi / 60, "N.mm": 1e-3, "deg": math.pi / 180, "deg/s": math.pi / 180, "degC": 1}
 SHOWN = dict(l="mm", m="g", w="cm", n="rpm", tau="N.mm", theta="deg", omega="deg/s", speed="rpm", heat="degC")
 

@@ -22,7 +22,7 @@ pytestmark = pytest.mark.release
 
 BEAD = (ROOT / "tests" / "systems" / "BeadOnHoop" / "system.xml").read_text()  # solver erk
 PENDULUM = ROOT / "fmu" / "SimplePendulum" / "system.xml"
-# Systems whose solver is not that of a <coordinate>: of MJCF, of a state, and without any.
+# Systems whose solvers differ from the default of systems with a <coordinate>: a robot in MJCF, a state alone, and formulas alone.
 SWING = """<mujoco model="Swing"><worldbody><body name="rod"><joint name="hinge" axis="0 1 0"/>
 <geom type="capsule" fromto="0 0 0 0 0 -1" size="0.02"/></body></worldbody></mujoco>"""
 DECAY = '<system name="Decay"><state name="s" rate="-s" start="1"/><output name="y">s</output></system>'

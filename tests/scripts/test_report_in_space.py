@@ -58,7 +58,7 @@ def test_links_move_with_their_joints(problem):
 
 
 def test_springs_of_the_governor():
-    """At rest at the start, between the middles of the arms and the sides of the slider."""
+    """The springs have their natural length at the start. They connect the middles of the arms with the sides of the slider."""
     for spring in GOVERNOR.model.springs:
         (_, begin), (_, end) = spring.ends
         assert np.linalg.norm(begin - end) == pytest.approx(spring.length, rel=1e-14)

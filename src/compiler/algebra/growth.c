@@ -252,7 +252,7 @@ static int cap_factor(struct Graph *graph, struct Factor factor, Node *result) {
   return 1;
 }
 
-/* Replaces the growing exponentials of a term by capped ones; returns as cap_factor(). */
+/* Replaces the growing exponentials of a term by capped ones. Returns the same as cap_factor(). */
 static int cap_term(struct Graph *graph, Node term, Node *result) {
   Node base;
   struct Factor factors[FACTOR_LIMIT];

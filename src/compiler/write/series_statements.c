@@ -74,7 +74,7 @@ static uint32_t spaces_of(const struct LimitChecks *checks) {
 
 static void write_limit(FILE *file, const struct Program *program) {
   const struct LimitChecks *checks = &program->series->limit;
-  const struct IrFunction spaces = {.spaces = spaces_of(checks)}; /* for its spaces only */
+  const struct IrFunction spaces = {.spaces = spaces_of(checks)}; /* has spaces, no instructions */
   write_head(file, FUNCTION_LIMIT, "", checks->count);
   declare_time(file, ir_uses(&spaces, SPACE_TIME_ROW));
   statements_declare_point(file, program, &spaces);

@@ -71,7 +71,7 @@ static void write_site_force(const struct Writer *writer, const struct RobotLink
 static void write_forces(const struct Writer *writer, const struct Transmission *transmission, const char *force) {
   for (size_t i = 1; i < transmission->site_count; i++) {
     const struct RobotLink *first = transmission->sites[i - 1], *second = transmission->sites[i];
-    if (first->carrier == second->carrier) continue; /* of constant length */
+    if (first->carrier == second->carrier) continue; /* the segment has a constant length */
     write_site_force(writer, first, second, force);
     write_site_force(writer, second, first, force);
   }
