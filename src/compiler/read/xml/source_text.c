@@ -85,8 +85,8 @@ static bool names_encoding(const struct TextScan *scan) {
 }
 
 /*
- * Replaces <?xml ...?> by blanks, with a warning, where only its place or its version is wrong: after blank lines or
- * comments, or with a version below 1.
+ * Replaces <?xml ...?> by blanks, with a warning, if only its position or its version is wrong. It may follow blank
+ * lines or comments, or have a version below 1.
  */
 static void blank_declaration(char *text, size_t length, const struct Diagnostics *diagnostics) {
   struct TextScan scan = {.next = text, .end = text + length, .line = 1};
