@@ -35,10 +35,14 @@ FEET = """<system name="{name}"><parameter name="a" start="0.2"/><parameter name
   <kinetic>vx^2/2 + vz^2/2 + (a^2 + h^2)*w^2/24</kinetic><potential>9.81*(z*cos(slope) - x*sin(slope))</potential>
   <for index="i" from="1" to="3"><define name="d[i]">(i/2 - 1)*a</define><contact name="c[i]" gap="z - d[i]*sin(phi) - h/2*cos(phi)"/>
   <friction name="f[i]" velocity="vx - (d[i]*sin(phi) + h/2*cos(phi))*w" force="mu*c[i].force"/></for><solver method="{method}"/></system>"""
+RAMP = """<system name="{name}"><parameter name="m" start="2"/><parameter name="r" start="1"/><coordinate name="x" velocity="v"/>
+  <particle mass="m" x="x"/><contact name="stop" gap="x"/><friction name="rub" coordinate="x" force="1"/><force coordinate="x">r*time - 3</force>
+  <solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
     ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "radau", "bdf", "erk"]),
     ("Crank", CRANK, ["taylor", "radau", "bdf"]), ("Slider", SLIDER, ["taylor"]), ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"]),
-    ("Balanced", BALANCED, ["taylor"]), ("Feet", FEET, ["taylor"])
+    ("Balanced", BALANCED, ["taylor"]), ("Feet", FEET, ["taylor"]),
+    ("Ramp", RAMP, ["taylor", "auto"])
 ] for method in methods}  # fmt: skip
 
 
@@ -167,3 +171,13 @@ def test_friction_at_a_dead_centre_in_model_exchange():
     for name, value in {"phi": 3.5, "x": 0.3 * math.cos(3.5), "w": 2.0, "v": -0.6 * math.sin(3.5)}.items():
         instance.set({name: value})
     assert instance.get("der(w)") == pytest.approx(0.3 * math.sin(3.5) / 0.2, rel=1e-9)
+
+
+@pytest.mark.parametrize("method", ["taylor", "auto"])
+@pytest.mark.parametrize("m, r", [(3.17321, 1.91419), (2.99056, 2.47316), (3.15691, 2.88058), (1.59648, 1.3763), (0.51403, 1.73155), (2.11834, 1.86245)])
+def test_a_force_lifts_a_body_that_friction_holds(method, m, r):
+    """The contact opens at 2/r, where force and friction cancel, up to the rounding of time; the body slips at 4/r."""
+    instance = Instance(f"Ramp_{method}").initialize({"m": m, "r": r})
+    for _ in range(40):
+        instance.step(0.1)
+    assert instance.get("x", "v") == pytest.approx([r * (4 - 4 / r) ** 3 / (6 * m), r * (4 - 4 / r) ** 2 / (2 * m)], rel=1e-8)

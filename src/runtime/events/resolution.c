@@ -115,6 +115,9 @@ static void add_error_bound(struct Resolution *resolution, size_t slot, double e
   resolution->error_bound[slot] = fmax(resolution->error_bound[slot], error_bound);
 }
 
+/* Relative rounding error bound of time, in units of DBL_EPSILON. */
+static const double time_rounding = 8.0;
+
 /* Rounding error of a velocity after a jump, relative to its size before: the equations may be nearly singular. */
 static const double rounding_of_jumps = 1e-11;
 
@@ -123,9 +126,11 @@ static void measure_velocity(struct Resolution *resolution, size_t slot) {
   add_error_bound(resolution, slot, rounding_of_jumps * resolution->largest[slot]);
 }
 
+/* Evaluates the values at a perturbed state and time; the factor gives rounding error bounds from their changes. */
 static bool values_rounded(struct Resolution *resolution, bool otherwise, double *value, double *factor) {
   *factor = round_state(resolution->state, otherwise, resolution->rounded);
-  return resolution_values(resolution, resolution->rounded, value);
+  double change = time_rounding / *factor * DBL_EPSILON * (otherwise ? -1.0 : 1.0);
+  return resolution_values_near(resolution, resolution->time * (1.0 + change), resolution->rounded, value);
 }
 
 /* Adds rounding errors of the values' operations, which perturbations of the state miss where large terms cancel. */
@@ -180,7 +185,7 @@ bool resolution_evaluate(struct Resolution *resolution) {
 }
 
 double resolution_error_bound(const struct Resolution *resolution, size_t slot, size_t rate) {
-  double change = 8.0 * DBL_EPSILON * fabs(resolution->time * resolution->value[rate]);
+  double change = time_rounding * DBL_EPSILON * fabs(resolution->time * resolution->value[rate]);
   return resolution->error_bound[slot] + (isfinite(change) ? change : 0.0);
 }
 
