@@ -19,6 +19,7 @@ struct Derivation {
   struct Page *page;
   const struct Model *model;
   const struct Equations *equations;
+  const char *lagrangian_name, *reaction_name; /* L and R, or words if the system has these names */
   Node lagrangian, *momentum, *gradient, *momentum_rate, *force;
 };
 
@@ -38,6 +39,8 @@ static struct Derivation derivation_of(struct Page *page) {
   struct Derivation derivation = {.page = page,
                                   .model = model,
                                   .equations = page->equations,
+                                  .lagrangian_name = page_symbol(model, "L", "Lagrangian"),
+                                  .reaction_name = page_symbol(model, "R", "reaction"),
                                   .momentum = allocate(n, sizeof(Node)),
                                   .gradient = allocate(n, sizeof(Node)),
                                   .momentum_rate = allocate(n, sizeof(Node)),
@@ -107,35 +110,40 @@ static void write_bodies(const struct Derivation *derivation) {
 }
 
 static void write_partial_derivatives(const struct Derivation *derivation) {
+  const char *name = derivation->lagrangian_name;
   page_step(derivation->page, "The Lagrangian and its derivatives");
-  page_step_equation(derivation->page, "L", derivation->lagrangian);
+  page_step_equation(derivation->page, name, derivation->lagrangian);
   for (size_t i = 0; i < derivation->equations->count; i++) {
-    page_step_equation(derivation->page, format_text("diff(L, %s)", velocity_name(derivation, i)),
+    page_step_equation(derivation->page, format_text("diff(%s, %s)", name, velocity_name(derivation, i)),
                        derivation->momentum[i]);
-    page_step_equation(derivation->page, format_text("diff(L, %s)", coordinate_name(derivation, i)),
+    page_step_equation(derivation->page, format_text("diff(%s, %s)", name, coordinate_name(derivation, i)),
                        derivation->gradient[i]);
   }
   for (size_t i = 0; i < derivation->equations->count; i++)
-    page_step_equation(derivation->page, format_text("der(diff(L, %s))", velocity_name(derivation, i)),
+    page_step_equation(derivation->page, format_text("der(diff(%s, %s))", name, velocity_name(derivation, i)),
                        derivation->momentum_rate[i]);
 }
 
 static void write_lagrange(const struct Derivation *derivation) {
   struct Page *page = derivation->page;
+  const char *name = derivation->lagrangian_name;
   bool constrained = derivation->model->constraints.count > 0, has_forces = false;
   page_step(page, "Lagrange's equations");
   for (size_t i = 0; i < derivation->equations->count; i++) has_forces |= derivation->force[i] != ZERO;
   for (size_t i = 0; i < derivation->equations->count; i++) {
-    char *left = format_text("der(diff(L, %s)) - diff(L, %s)%s", velocity_name(derivation, i),
-                             coordinate_name(derivation, i), constrained ? " + R" : "");
+    char *left = format_text("der(diff(%s, %s)) - diff(%s, %s)", name, velocity_name(derivation, i), name,
+                             coordinate_name(derivation, i));
+    if (constrained) left = format_text("%s + %s", left, derivation->reaction_name);
     page_step_texts(page, left, has_forces ? format_text("Q.%s", coordinate_name(derivation, i)) : "0");
   }
   for (size_t i = 0; i < derivation->equations->count && has_forces; i++)
     page_step_equation(page, format_text("Q.%s", coordinate_name(derivation, i)), derivation->force[i]);
   page_paragraph(page, "Carried out, they are the equations of motion above.");
   if (constrained)
-    page_paragraph(page, "R is the sum over the constraints of λ times the derivative by the coordinate, or by its "
-                         "velocity for a constraint on velocities.");
+    page_paragraph(page,
+                   format_text("Here %s is the sum over the constraints of λ times the derivative by the coordinate, "
+                               "or by its velocity for a constraint on velocities.",
+                               derivation->reaction_name));
 }
 
 /* Writes the elements of M and h in M(q) q'' + h(q, q', t) = Q. */
@@ -230,7 +238,8 @@ static void write_conserved(const struct Derivation *derivation) {
   page_step(page, "Conserved quantities");
   if (conserves_energy(page)) {
     count++;
-    page_step_equation(page, "E", add(page->model->graph, page->summary->kinetic, page->summary->potential));
+    page_step_equation(page, page_symbol(derivation->model, "E", "energy"),
+                       add(page->model->graph, page->summary->kinetic, page->summary->potential));
   }
   for (size_t i = 0; i < derivation->equations->count; i++) {
     if (!is_cyclic(derivation, i)) continue;

@@ -48,11 +48,12 @@ static void write_energies(struct Page *page) {
   const struct Summary *summary = page->summary;
   bool linearized = page->model->linearized;
   bool separate = !linearized && page->model->energies.kinetic.node != page->equations->kinetic;
+  bool has_symbol = *page_symbol(page->model, "L", "") != '\0';
   page_heading(page, "Energies");
   if (separate) page_equation(page, "T", summary->lagrangian_kinetic);
   page_equation(page, "K", summary->kinetic);
   page_equation(page, "U", summary->potential);
-  page_paragraph(page, separate ? "The Lagrangian is L = T - U." : "The Lagrangian is L = K - U.");
+  page_paragraph(page, format_text("The Lagrangian is %s%s - U.", has_symbol ? "L = " : "", separate ? "T" : "K"));
   if (linearized) return;
   write_meaning_of_energies(page);
   page_paragraph(page, balance_of(page->model, summary->is_autonomous));

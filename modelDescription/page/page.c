@@ -93,6 +93,21 @@ void page_step_equation(const struct Page *page, const char *left, Node right) {
   page_step_texts(page, left, right_side(page, left, right));
 }
 
+static bool has_name(const struct VariableList *list, const char *name) {
+  bool found = false;
+  for (size_t i = 0; i < list->count; i++) found |= strcmp(list->items[i].name, name) == 0;
+  return found;
+}
+
+const char *page_symbol(const struct Model *model, const char *symbol, const char *word) {
+  const struct VariableList *lists[] = {&model->parameters,  &model->calculated, &model->inputs,
+                                        &model->coordinates, &model->velocities, &model->states,
+                                        &model->definitions, &model->outputs};
+  bool is_name = false;
+  for (size_t i = 0; i < 8; i++) is_name |= has_name(lists[i], symbol);
+  return is_name ? word : symbol;
+}
+
 void page_rest(const struct Page *page, size_t count, size_t shown, const char *objects) {
   if (count == shown) return;
   char *text = format_text("%zu further %s are not shown.", count - shown, objects);

@@ -55,6 +55,9 @@ void page_step(const struct Page *page, const char *heading);
 void page_step_equation(const struct Page *page, const char *left, Node right);
 void page_step_texts(const struct Page *page, const char *left, const char *right);
 
+/* Returns the symbol of a quantity, such as L, or the word if a name of the system is this symbol. */
+const char *page_symbol(const struct Model *model, const char *symbol, const char *word);
+
 /* Writes how many objects of a kind the page omits; nothing if none. */
 void page_rest(const struct Page *page, size_t count, size_t shown, const char *objects);
 

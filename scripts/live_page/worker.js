@@ -6,6 +6,7 @@ const LONGEST_WORK = 13; // ms of steps in a tick at most, so that messages are 
 const MOST_SAMPLES = 16; // largest number of samples in a tick
 const MOST_SAVED = 600; // saved states at most, for steps back
 const PREVIEW = 150; // ms for the simulation that determines the size of the view
+const MOST_PREVIEWED = 1000; // steps of this simulation
 
 let description, pulls, wasmOf; // wasmOf(isPulled): returns the functions of a new module
 let shipped, pulled = null, active; // variants: as shipped, with inputs that pull bodies, and the one that runs
@@ -101,12 +102,13 @@ function tick() {
   setTimeout(tick, Math.max(0, TICK - (performance.now() - start)));
 }
 
-// Simulates from the start for PREVIEW, to determine the size of the view.
+// Simulates from the start, for at most PREVIEW and with at most MOST_PREVIEWED steps, to determine the size of the view.
 function preview() {
-  const end = performance.now() + PREVIEW, rows = [], times = [], steps = Math.min(1000, Math.ceil(description.duration / description.stepSize));
+  const { duration, stepSize } = description, length = Math.max(stepSize, duration / MOST_PREVIEWED), steps = Math.ceil(duration / length);
+  const end = performance.now() + PREVIEW, rows = [], times = [];
   try {
     for (let i = 0; i < steps && performance.now() < end; i++) {
-      advance(description.stepSize);
+      advance(length);
       rows.push(sample()[0]);
       times.push(time);
     }

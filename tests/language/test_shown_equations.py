@@ -84,6 +84,20 @@ def test_conserved_quantities(name):
     assert {entry.left for entry in shown[start:] if hasattr(entry, "left")} == CONSERVED[name]
 
 
+def test_names_of_the_derivation_are_no_variables(tmp_path):
+    """A motor's inductance L, resistance R and modulus E keep their names; words replace the Lagrangian's, the reaction's and the energy's."""
+    text = """<system name="Named"><parameter name="L" start="1e-3"/><parameter name="R" start="0.8"/><parameter name="E" start="2"/>
+    <coordinate name="q" velocity="i"/><coordinate name="x" velocity="v"/><kinetic>L*i^2/2 + R*v^2/2</kinetic><potential>E*q^2/2</potential>
+    <constraint name="c">q - x</constraint></system>"""
+    (tmp_path / "system.xml").write_text(text)
+    sections = listing(tmp_path / "system.xml").sections
+    steps = {entry.left: entry.right for entry in sections["Derivation"] if hasattr(entry, "left")}
+    assert "The Lagrangian is K - U." in [getattr(entry, "text", "") for entry in sections["Energies"]]
+    assert steps["diff(Lagrangian, i)"] == "L*i" and "L" not in steps
+    assert "der(diff(Lagrangian, i)) - diff(Lagrangian, q) + reaction" in steps
+    assert "energy" in steps and "E" not in steps
+
+
 FREEDOM = {"FourBar": "Degrees of freedom: 1.", "DoublePendulum": "Degrees of freedom: 2.", "PendulumCartesian": "Degrees of freedom: 1.", "RollingDisk": "Degrees of freedom: 3."}
 
 

@@ -160,7 +160,7 @@ class MuJoCo:
         return tuple(map(np.array, zip(*[self.advance(self.steps // POINTS) for _ in range(POINTS)])))
 
     def advance(self, steps):
-        """Return energy and compared quantities after so many steps; they are computed in a copy of the data, to leave the simulation unchanged."""
+        """Return energy and compared quantities after this number of steps. They are computed in a copy of the data, which leaves the simulation unchanged."""
         library, model, data = self.library, self.mujoco, self.copy
         library.mj_step(model, self.data, steps)
         data.qpos[:], data.qvel[:] = self.data.qpos, self.data.qvel

@@ -223,7 +223,7 @@ const struct Function functions[OPERATION_COUNT] = {
                .recurrence = ANGLE,
                .auxiliary = sum_of_squares,
                .partial_derivatives = partials_of_angle,
-               .auxiliary_limit = "positive"}, /* both operands too: series_limit_angle() */
+               .auxiliary_limit = "positive"}, /* both operands have a limit too: series_limit_angle() */
     [MINIMUM] = {.name = "min",
                  .c_name = "fmin",
                  .of_two = fmin,

@@ -20,7 +20,7 @@ enum { METHOD_SOURCES = 10 };
 struct Method {
   const char *name;          /* in system.xml and on the command line */
   const char *solver;        /* name of its file, and of its struct Solver after "solver_" */
-  const char *sparse_solver; /* the same for a large sparse Jacobian; NULL for none */
+  const char *sparse_solver; /* the solver for a large sparse Jacobian; NULL for none */
   const char *sentence;      /* for the documentation */
   const char *evaluations;   /* description of the statistic derivativeEvaluations; NULL if it counts none */
   /* Other source files that it needs. */

@@ -101,7 +101,7 @@ static void write_results(FILE *file, const struct Encoding *encoding, enum Func
   write_words(file, text->name, &tables.words);
   write_sizes(file, "uint32_t", format_text("%s_start", text->name), tables.start, groups->count);
   write_sizes(file, type, format_text("%s_slot", text->name), tables.slot, groups->count);
-  fprintf(file, "\n/* %s; %zu operations for all of them */\nstatic Real %s(%s, size_t result) {\n", text->comment,
+  fprintf(file, "\n/* %s; %zu operations in all */\nstatic Real %s(%s, size_t result) {\n", text->comment,
           tables.operation_count, text->name, text->arguments);
   begin_frame(file, takes(name, "*seed"));
   fprintf(file, "  Real value[%zu] = {REAL(NAN)};\n", tables.largest_slot + 1);

@@ -167,7 +167,8 @@ size_t write_products(FILE *file, const struct Program *program, const struct Ir
   for (size_t i = 0; i < ir->count; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
     if (!is_product(instruction)) continue;
-    if (products == 0) fputs("/* The products of an order: number and factors */\n#define SERIES_PRODUCTS(EACH)", file);
+    if (products == 0)
+      fputs("/* The products of an order: their number and factors */\n#define SERIES_PRODUCTS(EACH)", file);
     fprintf(file, " \\\n  EACH(%zu, ", products++);
     write_text(file, program, instruction, opcode_factors(instruction->opcode), NULL, "(");
     fputs(")", file);

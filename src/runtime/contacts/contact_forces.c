@@ -26,8 +26,8 @@
 #include "evaluation/services.h"
 
 /*
- * In rounding error bounds: accelerations of a contact whose force has just vanished that count as 0. Such an
- * acceleration is a sum of several rounding errors, more than one bound covers.
+ * Accelerations of a contact whose force has just vanished count as 0 below this number of rounding error bounds.
+ * Such an acceleration is a sum of several rounding errors, more than one bound covers.
  */
 static const double parting_in_error_bound = 1e3;
 

@@ -10,7 +10,7 @@
 
 /* Flights shorter than this many units in the last place of the time count as rest: their ends cannot be separated. */
 static const double shortest_flight = 1000.0;
-/* In units of the method's error: bounces lower than this are lost in it, and some methods would sustain them. */
+/* Bounces below this share of the method's error are lost in it, and some methods would sustain them. */
 static const double lost_share = 0.02;
 
 bool is_touching(const struct Resolution *resolution, size_t contact) {

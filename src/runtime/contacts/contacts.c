@@ -44,7 +44,7 @@ static const double largest_penetration = 1e-9;
 static const double rounded_start = 1e-4;
 
 /*
- * In rounding error bounds: a negative gap up to this is not located again, since the search allows
+ * A negative gap of at most this number of rounding error bounds is not located again, since the search allows
  * FLOOR_IN_ERROR_BOUND.
  */
 static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;

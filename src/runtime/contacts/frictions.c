@@ -21,7 +21,7 @@
 #include "evaluation/services.h"
 #include "events/continuity.h"
 
-/* In rounding error bounds: the sign of a smaller force is not determined. */
+/* The sign of a force below this number of rounding error bounds is not determined. */
 static const double least_certainty = 4.0;
 
 const double sticking_rate_share = 1e-6;

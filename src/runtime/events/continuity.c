@@ -7,7 +7,7 @@
 #include "evaluation/services.h"
 #include "instance/projection.h"
 
-/* In units of the scales of the state: a smaller change may be a rounding error. */
+/* Changes below this share of the scales of the state may be rounding errors. */
 static const double least_kink = 1e-6;
 
 const double close_share = 1e-6;

@@ -28,8 +28,8 @@ enum { STEP_LIMIT = 10, START_LIMIT = 100 };
 static const double converged = 1e-9;    /* change in units of the scales: its square is below rounding */
 static const double rounded_away = 1e-6; /* change that is rounding error if it stops shrinking: terms may cancel */
 static const double largest_move = 0.5;  /* of start values in one iteration, in units of their scales */
-static const double fulfilled = 1e-10;   /* residual as a length, in units of the scale of the state */
-static const double redundant_residual = 1e-8; /* likewise of a redundant constraint, before the last change */
+static const double fulfilled = 1e-10;   /* largest residual as a length, in units of the scale of the state */
+static const double redundant_residual = 1e-8; /* the same for a redundant constraint, before the last change */
 static const double largest_jump = 0.1;        /* residual by an input's change, in units of the scale of the state */
 static const double noted_move = 1e-2;         /* with prescribed inputs: moves to log, in the same units */
 static const double vanishing = 1e-6;          /* ratio of a row of J where its constraint holds to the row nearby */

@@ -4,9 +4,9 @@
 
 #include "evaluation/evaluate.h"
 
-/* In units of the tolerance and the scale of the speed: speeds that count as small, and as 0. */
+/* Speeds that count as small, and as 0, in units of the tolerance times the scale of the speed. */
 static const double small_share = 10.0, no_share = 0.1;
-/* In units of the small speed: frictions up to this speed come to rest together with a slow one. */
+/* Frictions up to this speed, in units of the small speed, come to rest together with a slow one. */
 static const double slow_share = 10.0;
 /* Least tolerances for these speeds, of methods and of importers, which do not reach smaller ones. */
 static const double least_tolerance = 1e-11, least_tolerance_in_exchange = 1e-6;

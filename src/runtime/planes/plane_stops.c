@@ -18,7 +18,7 @@
  */
 static const double is_tried = 1.0, has_no_hold = 2.0;
 
-/* In units of its stiction: a friction that needs more cannot stop the motion. */
+/* A friction that needs more than this multiple of its stiction cannot stop the motion. */
 static const double hopeless = 1e6;
 
 /* Lets all slow frictions stick for a trial. */

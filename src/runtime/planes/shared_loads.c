@@ -25,7 +25,10 @@ enum { CENTRE_STEPS = 1000 };
 /* Pivots below this share of the largest one count as 0, as sines below 1e-6 do in saddle.h. */
 static const double least_jacobian_row_share = 1e-6;
 
-/* In units of the limits: margins below the first are rounding errors, and forces exceed limits by up to the second. */
+/*
+ * Margins below the first are rounding errors, and forces exceed limits by up to the second, both in units of the
+ * limits.
+ */
 static const double least_spare = 2e-12, rounded_spare = 1e-9;
 
 /* Newton decrements at which the level falls, and at which the centre of level 1 is reached. */

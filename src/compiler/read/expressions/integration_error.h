@@ -25,7 +25,7 @@ struct Sampling {
   size_t count;
   double *start, *symbols, *values;   /* the last of all nodes of the graph */
   double *sums, *sizes;               /* one for each target: of its values, and of their magnitudes */
-  double *reference, *reference_size; /* the same by many nodes */
+  double *reference, *reference_size; /* value and size by many nodes */
   uint64_t random;
 };
 

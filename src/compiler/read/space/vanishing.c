@@ -7,7 +7,7 @@
 /* Samples that must all be 0; a nonzero analytic function is hardly ever 0 at one of them. */
 enum { SAMPLES = 3 };
 
-/* Relative bound of a zero: some thousand rounding errors. */
+/* Values below this share count as 0: some thousand rounding errors. */
 static const double digits = 1e-12;
 
 /* Returns a value between 0.05 and 0.95, where most functions are defined, different for each sample and symbol. */
