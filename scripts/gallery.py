@@ -102,6 +102,12 @@ STYLE = """
 .systems img { width: 100%; height: 170px; object-fit: contain; margin: 0; background: #fff; border-radius: 4px; }
 .systems h3 { margin: 0; font-size: 1.05rem; overflow-wrap: anywhere; }
 .systems p { margin: 0; font-size: .9rem; flex: 1; }
+.systems a { white-space: nowrap; }
+[data-bs-theme=light] { --bs-link-color-rgb: 20, 102, 170; --bs-link-hover-color-rgb: 12, 70, 120; }
+@media (max-width: 800px) {
+  table { display: block; overflow-x: auto; }
+  td code { white-space: normal; overflow-wrap: anywhere; }
+}
 """
 
 
@@ -122,7 +128,7 @@ def write_system(archive):
     links = {"equations": "equations.html", "FMU": f"{name}.fmu"}
     if (BUILD / "fmi3" / archive.name).exists():
         shutil.copy(BUILD / "fmi3" / archive.name, folder / f"{name}-FMI3.fmu")
-        links["FMU of FMI 3"] = f"{name}-FMI3.fmu"
+        links["FMI 3"] = f"{name}-FMI3.fmu"
     source = ROOT / "fmu" / name / "system.xml"
     if source.exists():
         shutil.copy(source, folder / "system.xml")
@@ -133,9 +139,9 @@ def write_system(archive):
     except Problem as problem:  # an FMU whose method has no sources in it
         print(f"scripts/gallery: no live page: {problem}", file=sys.stderr)
     addresses = {text: f"systems/{name}/{place}" for text, place in links.items()}
+    name_of_first, first = next(iter(addresses.items()))
     if can_be_edited(name):
-        addresses |= {"edit": f"laboratory.html#{name}"}
-    first = next(iter(addresses.values()))
+        addresses = {name_of_first: first, "edit": f"laboratory.html#{name}"} | addresses
     sentence = html.escape(read_tree(archive).get("description") or "")
     words = " · ".join(f'<a href="{address}">{text}</a>' for text, address in addresses.items())
     return f'<div><a href="{first}"><img src="systems/{name}/picture.png" alt="{name}" loading="lazy"></a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
