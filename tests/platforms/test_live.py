@@ -414,6 +414,16 @@ def test_the_view_of_unbounded_motion(browser, page_file):
         assert 1.6 < page.evaluate("live.scene.span") < 6 * np.hypot(1.6, 0.6) + 0.5
 
 
+def test_the_view_contains_the_whole_experiment(browser, page_file):
+    """In 5 s, which are 5000 steps, the ball bounces twice as high as in the first second."""
+    instance = fmu.Instance("VibratingTable", logging=False)
+    with contextlib.closing(SimpleNamespace(close=instance.free)):
+        heights = [h for _, h in instance.initialize().run(5, 0.005, "h")]
+    assert max(heights) > 2 * max(heights[:200])
+    with opened(browser, page_file("VibratingTable")) as page:
+        assert page.evaluate("live.scene.frameBox.max.y") > max(heights)
+
+
 def test_short_experiments_and_large_numbers(browser, page_file):
     """An experiment of 1 s is shown for 5 s; fields show numbers that do not fit in them as powers of ten."""
     with opened(browser, page_file("WormGear")) as page:
