@@ -126,7 +126,7 @@ def derive_with_sympy(name, n, queue):
 
 
 def sympy(name, n):
-    """Return the same for SymPy, which derives M and f; the operations include a numeric factorization of a full M."""
+    """Return time and number of operations for SymPy, which derives M and f. The operations include a numeric factorization of a full M."""
     queue = multiprocessing.Queue()
     process = multiprocessing.Process(target=derive_with_sympy, args=(name, n, queue))
     process.start()

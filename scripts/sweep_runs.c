@@ -270,8 +270,8 @@ static const char *run(const struct Functions *f, fmi2Component component, const
 }
 
 /*
- * Does runs first .. count - 1. Returns count, or the run that failed, with the name of the function. Its times are
- * wall-clock times.
+ * Computes the runs first .. count - 1. Returns count, or the run that failed, with the name of the function. Its
+ * times are wall-clock times.
  */
 EXPORT size_t sweep_runs(const struct Functions *functions, fmi2Component component, const struct Sweep *sweep,
                          size_t first, size_t count, const char **failed) {

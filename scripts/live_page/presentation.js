@@ -34,7 +34,7 @@ async function togglePresentation() {
   try {
     await (isOn ? document.documentElement.requestFullscreen() : document.fullscreenElement && document.exitFullscreen());
   } catch {
-    // A frame that may not fill the screen presents within itself.
+    // In a frame that may not use the whole screen, the presentation fills the frame.
   }
   adaptSize();
 }

@@ -57,13 +57,14 @@ def test_trolley_moves_under_the_swinging_load(open_fmu):
 
 
 def test_gains_are_those_of_the_regulator(lagrange_fmu):  # noqa: F811
-    model = lagrange_fmu.linearize(fmu.archive("Crane"))
-    order = [list(model.states).index(name) for name in ("x", "v", "theta", "omega")]
-    A, B = np.array(model.A)[np.ix_(order, order)], np.array(model.B)[order]
-    by_hand = [[0, 1, 0, 0], [0, -C / M, m * G / M, 0], [0, 0, 0, 1], [0, C / (M * L), -(M + m) * G / (M * L), 0]]
+    """The page's weights and gains are in the order of the states that linearize() returns."""
+    A, B, _, _, states = lagrange_fmu.linearize(fmu.archive("Crane"))[:5]
+    assert ", ".join(states) == re.search(r"in the order (\w+, \w+, \w+, \w+)\.", CRANE)[1]
+    by_hand = [[0, 0, 1, 0], [0, 0, 0, 1], [0, m * G / M, -C / M, 0], [0, -(M + m) * G / (M * L), C / (M * L), 0]]
     np.testing.assert_allclose(A, by_hand, atol=1e-12)
-    gains = 5 * B.T @ solve_continuous_are(A, B, np.diag([20, 0, 50, 0]), [[0.2]])
-    shown = re.search(r"the gains (\S+) N/m, (\S+) N.s/m, (\S+) N/rad and (\S+) N.s/rad", CRANE).groups()
+    weights = [float(weight) for weight in re.search(r"Q = diag\((.*?)\)", CRANE)[1].split(",")]
+    gains = 5 * np.transpose(B) @ solve_continuous_are(A, B, np.diag(weights), [[0.2]])
+    shown = re.search(r"the gains\s+(\S+) N/m, (\S+) N/rad, (\S+) N.s/m and (\S+) N.s/rad", CRANE).groups()
     np.testing.assert_allclose(gains[0], [float(value) for value in shown], atol=5e-3)
 
 

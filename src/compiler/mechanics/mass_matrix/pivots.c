@@ -199,7 +199,7 @@ static Node pivot_scale(struct Graph *graph, Node diagonal) {
 }
 
 static void append_pivot(struct Inertia *inertia, size_t coordinate, Node value, Node diagonal, Node scale) {
-  if (value == ONE || coordinate >= inertia->coordinate_count) return; /* such as those of prescribed coordinates */
+  if (value == ONE || coordinate >= inertia->coordinate_count) return; /* as the pivots of prescribed coordinates are */
   inertia->pivots[inertia->pivot_count++] =
       (struct Pivot){.value = value, .diagonal = diagonal, .scale = scale, .coordinate = coordinate};
 }
