@@ -33,7 +33,10 @@ static uint64_t number_of(const struct PackedMesh *packed, const struct Mesh *me
   return (uint64_t)llround((mesh->points[point][axis] - packed->least[axis]) / packed->step);
 }
 
-/* Merges the points in sorted[] by cells of a grid with so many cells a side. Returns the number of points left. */
+/*
+ * Merges points that share a cell of a grid with `cells` cells along each axis. sorted[] lists the points that are
+ * left, before and after. Returns their number.
+ */
 static size_t merge_points(const struct PackedMesh *packed, const struct Mesh *mesh, uint64_t cells,
                            struct Cell *sorted, size_t count, size_t *merged) {
   size_t kept = 0;

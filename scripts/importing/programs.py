@@ -40,9 +40,9 @@ def values_of(row, outputs):
 
 def by_program(words_of, file="out.csv", delimiter=","):
     """
-    Return a function as in packages.py that runs a program.
+    Return a function that runs an importer, with the arguments of those in packages.py.
 
-    words_of(archive, kind, end, step, folder) returns its command; it is run in the folder, where it writes `file`.
+    words_of(archive, kind, end, step, folder) returns the words of the command. The command runs in the folder, and writes `file` there.
     """
 
     def run(archive, kind, end, outputs):

@@ -46,7 +46,7 @@ def test_forces_are_multipliers(name, form, open_fmu):
 
 
 def without_displacements(text):
-    """The same system without displacements, as for an author who needs no reaction forces."""
+    """Return the system without displacements, as an author writes it who needs no reaction forces."""
     text = re.sub(r"<displacement .*?/>|<output .*?</output>", "", text)
     for written, plain in [(r"px \+ \(l \+ stretch\)", "l"), (r"py - \(l \+ stretch\)", "-l"), (r"theta \+ turn", "theta"),
                            (r"\(l \+ stretch\[j\]\)", "l"), (r"- d\*sin\(u\)|\+ d\*cos\(u\)|\+ d/3", "")]:  # fmt: skip
@@ -55,7 +55,7 @@ def without_displacements(text):
 
 
 def operations(text, folder):
-    """Number of operations of each function that the FMU calls for the motion, by its description."""
+    """Return the number of operations of each function that the FMU calls for the motion, by its description."""
     (folder / "system.xml").write_text(text)
     assert lagc("system.xml", "-o", "out", cwd=folder).stderr == ""
     found = re.findall(r"^/\* (.*?); (\d+) operations", (folder / "out" / "system.c").read_text(), re.M)
@@ -142,7 +142,7 @@ def test_page_shows_the_force(tmp_path):
     assert "<code>stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")
 
 
-# A force unit times the velocity's is power: N, N.m and V.
+# The unit of a force times that of its velocity is a unit of power: N, N.m and V are units of forces.
 FORCES = {
     "dx.force": "N", "dp.force": "N.m", "a.force": "N", "b.force": "N.m", "node.force": "kg.m2/(s3.A)", "blade.force": "N", "line.force": "N",
     "rub.force": "N.m", "grip.force": "N", "y.max.force": "N", "wall.force": "N", "phi.max.force": "N.m", "loose.force": "N",

@@ -28,11 +28,11 @@ def all_names():
     return sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
 
 
-temporary_folders = []  # removed at the end of the process
+temporary_folders = []  # folders of unpacked FMUs, which are removed when the process ends
 
 
 def small_names():
-    """Names without those of hundreds of states, which take minutes under sanitizers or where every pair of variables is tried."""
+    """Return all names but those of systems with hundreds of states. These take minutes under sanitizers, or where every pair of variables is tried."""
     return [name for name in all_names() if name not in ("HangingCable", "NFourBar", "Rope")]
 
 
@@ -41,7 +41,7 @@ OF_EACH_KIND = (ROOT / "tests" / "of_each_kind.txt").read_text().split()
 
 
 def one_of_each_kind(names):
-    """Parameters for tests under sanitizers: one system of each kind, and the others before a release only."""
+    """Return parameters for tests under sanitizers. Systems outside of OF_EACH_KIND run before a release only."""
     return [pytest.param(name, marks=() if name in OF_EACH_KIND else pytest.mark.release) for name in names]
 
 
@@ -53,7 +53,7 @@ def unpacked_archive(path):
 
 
 def unpacked(name):
-    """Folder of an unpacked FMU of fmu/, of tests/systems/, or of build_systems(). Two systems of these may have one name."""
+    """Return the folder of an unpacked FMU of fmu/, of tests/systems/, or of build_systems(). Systems of different origins may share a name."""
     return unpacked_archive(archive(name))
 
 

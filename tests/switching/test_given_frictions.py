@@ -199,14 +199,14 @@ def test_forces_in_a_plane(open_fmu, body, method):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("body", ["Reversing", "Cusp"])
 def test_no_force_where_a_given_velocity_passes_through_0(open_fmu, body, method, steps):
-    """Friction has no direction there, so that the drives supply only the force of the acceleration."""
+    """Where the velocity is 0, friction has no direction and no force. The drives then supply only the force of the acceleration."""
     instance = open_fmu(name_of(body, method)).initialize()
     instance.run(1, 1 / steps)
     assert instance.get("rub.force", "rub.across.force", "drive", "across") == pytest.approx([0, 0, *PRESCRIBED[body](1)[1]], abs=0.01)
 
 
 def check_dwell(body, time, drive, force, turns):
-    """At rest nothing acts. After 2 s the second body moves k times as fast, and friction opposes it."""
+    """At rest there is no force. After 2 s the second body moves k times as fast, and friction opposes it."""
     _, k, stop, rate = DWELLS[body]
     if stop + 0.01 < time < 1.99:
         assert (drive, force, turns) == (pytest.approx(0, abs=1e-12), 0, 0), time

@@ -55,7 +55,7 @@ FINE = {
                      (0.92 - 0.2 * 2.6 - 0.25 * 2.6**2, 0.5 - 0.2 * 2.6 - 0.25 * 2.6**2)),
     "ClimbingByLaw": ('<potential>if(x &lt; 0.5, -1, 0)</potential><force coordinate="x">-1</force>'
                       '<event when="x - 0.5"><set velocity="v">-sqrt(v^2 + 2)</set></event>', (0.5 - 3**0.5 * 2 - 2, 0.5)),
-    # Bodies on a wedge: its corner changes no momentum that another body shares. Functions of time may jump.
+    # The corner of a wedge changes only the momentum of the body on it. Functions of time may jump.
     "Bead": ('<particle mass="1" x="x - 0.5" y="abs(x - 0.5)"/><force coordinate="x">-1</force>', (1 - 9 / 6, 0.5)),
     "Timed": ('<potential>if(time &gt; 1, 5, 0)*x</potential>', (1 - 5 * 2**2 / 2, 0.5)),
     "Mirror": ('<particle mass="1" x="abs(x - 3)"/><force coordinate="x">-4</force>', (1 - 4 * 9 / 4, 0.5)),

@@ -37,7 +37,7 @@ struct Source *include_open(struct Reader *reader, xmlNodePtr node);
 /* Makes another file current; returns the previous one. */
 struct Source *source_enter(struct Reader *reader, struct Source *source);
 
-/* Returns the path of a file that the current one names, relative to it. */
+/* Returns the path of a file that the current file names. The name is relative to the current file. */
 char *path_beside(const struct Reader *reader, const char *file);
 
 /* Returns the overrides of the element of this full name; NULL for none. Reports those by other elements. */
