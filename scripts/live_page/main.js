@@ -284,6 +284,7 @@ function addActions() {
   });
   $("present").addEventListener("click", togglePresentation);
   document.addEventListener("fullscreenchange", endPresentation);
+  document.addEventListener("keydown", ({ key }) => key === "Escape" && endPresentation());
   window.addEventListener("resize", () => scene && scene.objects && scene.resize());
 }
 

@@ -39,7 +39,7 @@ async function togglePresentation() {
   adaptSize();
 }
 
-// Ends the presentation where the browser leaves the whole screen, as by Escape.
+// Ends the presentation after the browser has left the whole screen, and by Escape in a frame that may not use it.
 function endPresentation() {
   if (document.fullscreenElement) return;
   document.body.classList.remove("presented");

@@ -295,6 +295,16 @@ def test_presentation(browser, page_file):
         page.wait_for_function("!document.body.classList.contains('presented') && getComputedStyle(document.querySelector('footer')).display === 'flex'")
 
 
+def test_escape_ends_a_presentation_in_a_frame(browser, page_file):
+    """A frame may not use the whole screen. There Escape ends the presentation, too."""
+    with opened(browser, page_file("DoublePendulum")) as page:
+        page.evaluate("() => { document.documentElement.requestFullscreen = () => Promise.reject(new TypeError()); }")
+        page.keyboard.press("f")
+        page.wait_for_function("document.body.classList.contains('presented')")
+        page.keyboard.press("Escape")
+        page.wait_for_function("!document.body.classList.contains('presented')")
+
+
 def test_presets(browser, page_file):
     """A button sets its values and restarts; the next one resets everything else."""
     with opened(browser, page_file("SimplePendulum")) as page:
