@@ -180,6 +180,35 @@ LINKED = """\
 """
 
 
+# Actuators with a state or a gain that varies, balanced weights, and a sum of all masses.
+DRIVEN = """\
+<mujoco model="driven">
+  <compiler angle="radian" settotalmass="7"/>
+  <option gravity="1 2 -9"/>
+  <default><general gear="0.7"/><default class="m"><muscle ctrlrange="-1.5 2"/></default></default>
+  <worldbody>
+    <body name="a" gravcomp="0.7"><joint name="a1" axis="0 1 0" ref="0.2" damping="0.1"/><geom type="box" size="0.1 0.2 0.3" pos="0.3 0 0.1"/>
+      <body name="aa" pos="0.1 0.2 0.3" euler="1 2 3" gravcomp="-1.5"><geom size="0.1" pos="0.1 0 0"/></body>
+      <body name="b" pos="0.4 0 0" gravcomp="1"><joint name="b1" axis="0 1 1"/><joint name="b2" type="slide" axis="1 0 0.2" ref="0.1"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.1 0.3"/>
+        <body name="c" pos="0 0 0.4"><joint name="c1" axis="1 0 1"/><geom type="box" size="0.1 0.2 0.3" pos="0 0.2 0"/></body>
+      </body>
+    </body>
+    <body name="d" pos="1 0 0"><joint name="d1" axis="0 1 0"/><geom size="0.1" pos="0 0 0.4"/></body>
+  </worldbody>
+  <tendon><fixed name="t"><joint joint="a1" coef="0.5"/><joint joint="c1" coef="-1.2"/></fixed></tendon>
+  <actuator>
+    <general name="filtered" joint="a1" dyntype="filter" dynprm="0.3" gainprm="2" biastype="affine" biasprm="0.5 -0.3 -0.2"/>
+    <damper name="damped" joint="b1" kv="3" ctrlrange="0 2"/>
+    <intvelocity name="wound" joint="c1" kp="4" kv="0.3" actrange="-1 1"/>
+    <general name="varied" joint="b2" gaintype="affine" gainprm="2 0.4 -0.3"/>
+    <cylinder name="pressed" tendon="t" timeconst="0.2" diameter="1.3" bias="0.1 -0.2 -0.3"/>
+    <position name="late" class="m" joint="d1" kp="5" kv="0.4" timeconst="0.05"/>
+    <position name="prompt" joint="d1" kp="2"/>
+    <general name="summed" joint="d1" dyntype="integrator"/>
+  </actuator>
+</mujoco>
+"""
+
 # Between two lengths the tendon's spring is slack.
 SLACK = """\
 <mujoco model="slack">
@@ -311,7 +340,8 @@ def robots(tmp_path_factory):
     files = FILES | {"Coupled": COUPLED} | {name: LOOPED.format(text) for name, text in EQUALITIES.items()}
     for name, text in files.items():
         (folder / f"{name}.xml").write_text(text)
-    files |= {"Meshed": MESHED, "Slack": SLACK, "Linked": LINKED}
+    files |= {"Meshed": MESHED, "Slack": SLACK, "Linked": LINKED, "Driven": DRIVEN}
+    (folder / "Driven.xml").write_text(DRIVEN)
     (folder / "Linked.xml").write_text(LINKED)
     (folder / "Slack.xml").write_text(SLACK)
     (folder / "Meshed.xml").write_text(MESHED)
@@ -483,6 +513,24 @@ def test_joints_that_follow_others(open_fmu):
         instance.fmu.getDerivatives(derivatives, 4)
         found = [derivatives[names.index(f"r.{name}_velocity")] for name in ("lead", "end")]
         assert np.max(np.abs(found - expected)) < 1e-10 * max(1, np.max(np.abs(expected)))
+
+
+def test_actuators_with_states(open_fmu):
+    """MuJoCo clips activations at their limits, so that the reference has none that passes them."""
+    reference, random = Reference(DRIVEN), np.random.default_rng(1)
+    model, data = reference.model, reference.data
+    names, inputs = reference.names(), fmu.names_of("Driven", "input")
+    states = [f"{inputs[i]}_activation" for i in range(model.nu) if model.actuator_actadr[i] >= 0]
+    assert len(states) == model.na == 5
+    for _ in range(STATES):
+        reference.draw(random)
+        data.act = random.uniform(-0.9, 0.9, model.na)
+        mujoco.mj_forward(model, data)
+        position, velocity, expected = reference.coordinates()
+        start = dict(zip([*names, *(f"{name}_velocity" for name in names), *states, *inputs], [*position, *velocity, *data.act, *data.ctrl]))
+        instance = open_fmu("Driven").initialize(start)
+        assert instance.get(*(f"der({name}_velocity)" for name in names)) == pytest.approx(expected, rel=1e-10, abs=1e-10)
+        assert instance.get(*(f"der({name})" for name in states)) == pytest.approx(data.act_dot, rel=1e-12, abs=1e-12)
 
 
 class Links:

@@ -28,7 +28,7 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
   bool has_rotational = false, has_sliding = false;
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct RobotJoint *joint = robot->joints[i];
-    has_sliding |= joint->friction > 0 && joint_slides(joint);
+    has_sliding |= joint->friction > 0 && (joint_slides(joint) || joint->type == FLOATING);
     has_rotational |= joint->friction > 0 && !joint_slides(joint);
   }
   for (size_t i = 0; i < robot->tendon_count; i++) {
@@ -222,6 +222,36 @@ static void write_rotation_energy(const struct Writer *writer, const struct Robo
                   true);
 }
 
+/* Writes the friction of a free joint along the fixed axes, and about the axes of its body, as in MuJoCo. */
+static void write_free_friction(const struct Writer *writer, const struct RobotJoint *joint) {
+  static const char *const turns[3] = {"omegaX", "omegaY", "omegaZ"};
+  const char *name = joint->symbol, *link = joint->child->symbol;
+  write_parameter(writer, format_text("%s_friction", name), joint->friction, "N",
+                  format_text("Coulomb friction of %s in each direction", name));
+  write_parameter(writer, format_text("%s_turning_friction", name), joint->friction, "N.m",
+                  format_text("Coulomb friction of %s about each axis", name));
+  xmlNodePtr force = writer->options->sticks ? NULL : write_element(writer, "force");
+  xmlNodePtr torque = writer->options->sticks ? NULL : write_element(writer, "torque");
+  for (int i = 0; i < 6; i++) {
+    bool is_turn = i >= 3;
+    char *limit = format_text("%s_%sfriction", name, is_turn ? "turning_" : "");
+    char *velocity =
+        is_turn ? format_text("%s_body.%s", link, turns[i - 3]) : format_text("%s_%s_velocity", name, axes[i]);
+    if (writer->options->sticks) {
+      xmlNodePtr friction = write_element(writer, "friction");
+      set_attribute(friction, "name", format_text("%s_bearing_%s%s", name, is_turn ? "about_" : "", axes[i % 3]));
+      set_attribute(friction, "velocity", velocity);
+      set_attribute(friction, "force", limit);
+    } else
+      set_attribute(is_turn ? torque : force, axes[i % 3],
+                    format_text("-%s*tanh(%s/%s)", limit, velocity, is_turn ? "creep_rate" : "creep_velocity"));
+  }
+  if (writer->options->sticks) return;
+  set_attribute(force, "on", copy_text(link));
+  set_attribute(torque, "on", copy_text(link));
+  set_attribute(torque, "in", copy_text(link));
+}
+
 static void write_free(const struct Writer *writer, const struct RobotJoint *joint, const struct JointStart *start,
                        const char *description) {
   const char *name = joint->symbol;
@@ -229,6 +259,7 @@ static void write_free(const struct Writer *writer, const struct RobotJoint *joi
   write_isotropic(writer, joint, "", 0.5,
                   format_text("(%s_x_velocity^2 + %s_y_velocity^2 + %s_z_velocity^2)", name, name, name), false);
   write_rotation_energy(writer, joint, "turning_");
+  if (joint->friction > 0) write_free_friction(writer, joint);
 }
 
 static void write_ball(const struct Writer *writer, const struct RobotJoint *joint, const struct JointStart *start,

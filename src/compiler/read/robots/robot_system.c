@@ -143,6 +143,25 @@ static void write_gravity(const struct Writer *writer, const struct Robot *robot
     if (gravity[i] != 0) set_attribute(node, axes[i], term(gravity[i] / size, "g"));
 }
 
+/* Writes the force that balances a share of a link's weight, as a potential at its centre of mass. */
+static void write_balance(struct Writer *writer, const struct Robot *robot, const struct RobotLink *link) {
+  double share = link->weightless * link->body.mass, size = robot_gravity(robot);
+  if (share == 0 || size == 0 || !carrier_moves(link, writer->options->floats)) return;
+  writer->line = link->line;
+  char *name = format_text("%s_balance", link->symbol), *height = copy_text("");
+  xmlNodePtr point = write_element(writer, "point");
+  set_attribute(point, "name", name);
+  set_attribute(point, "in", copy_text(link->symbol));
+  for (int i = 0; i < 3; i++) set_number(point, axes[i], link->body.center[i]);
+  for (int i = 0; i < 3; i++)
+    if (robot->gravity[i] != 0)
+      height = format_text("%s%s%s*%s.%s", height, *height != '\0' ? " + " : "", number(robot->gravity[i] / size), name,
+                           axes[i]);
+  write_parameter(writer, format_text("%s_mass", name), share, "kg",
+                  format_text("mass of '%s' whose weight is balanced", link->name));
+  set_content(write_element(writer, "potential"), format_text("%s_mass*g*(%s)", name, height));
+}
+
 static void write_loop(struct Writer *writer, const struct RobotLoop *loop) {
   writer->line = loop->line;
   xmlNodePtr joint = write_element(writer, "joint");
@@ -159,6 +178,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   write_friction_parameters(writer, robot);
   if (writer->options->has_ground) write_ground(writer, robot);
   for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_balance(writer, robot, link);
   for (size_t i = 0; i < robot->tendon_count; i++) {
     writer->line = robot->tendons[i].line;
     write_tendon(writer, &robot->tendons[i]);
@@ -172,9 +192,9 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
     write_limited_forces(writer, robot->joints[i]);
   }
   for (size_t i = 0; i < robot->loop_count; i++) write_loop(writer, &robot->loops[i]);
-  for (size_t i = 0; i < robot->tendon_link_count; i++) {
-    writer->line = robot->tendon_links[i].line;
-    write_tendon_link(writer, robot, &robot->tendon_links[i]);
+  for (size_t i = 0; i < robot->coupling_count; i++) {
+    writer->line = robot->couplings[i].line;
+    write_coupling(writer, &robot->couplings[i]);
   }
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;

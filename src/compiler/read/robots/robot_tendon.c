@@ -72,32 +72,31 @@ void write_tendon(const struct Writer *writer, const struct Tendon *tendon) {
   else write_excess_of_limits(writer, name, unit, lower, upper);
 }
 
-/* Returns the expression of a tendon's extension beyond its start length. */
-static char *extension_of(const struct Tendon *tendon) {
-  return format_text("%s - (%s)", transmission_length(&tendon->transmission), number(tendon->start));
+/* Returns the expression of a part's displacement from its start. */
+static char *displacement_of(const struct CoupledPart *part) {
+  return format_text("%s - (%s)", transmission_length(&part->transmission), number(part->start));
 }
 
-/* Writes the parameter for the coefficient of a power of the other tendon's extension. Returns its name. */
-static char *coefficient_of(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link,
-                            int power) {
-  const struct Tendon *first = &robot->tendons[link->tendons[0]], *second = &robot->tendons[link->tendons[1]];
+/* Writes the parameter for the coefficient of a power of the other part's displacement. Returns its name. */
+static char *power_of(const struct Writer *writer, const struct Coupling *coupling, int power) {
+  const struct CoupledPart *first = &coupling->parts[0], *second = &coupling->parts[1];
   const char *unit = transmission_unit(&first->transmission), *other = transmission_unit(&second->transmission);
-  char *name = format_text("%s_by_power_%d", robot_symbol(link->name), power);
-  write_parameter(writer, name, link->coefficient[power],
+  char *name = format_text("%s_by_power_%d", robot_symbol(coupling->name), power);
+  write_parameter(writer, name, coupling->coefficient[power],
                   power > 1 ? format_text("%s/%s%d", unit, other, power) : format_text("%s/%s", unit, other),
-                  format_text("coefficient in the length of '%s' of the length of '%s'", first->name, second->name));
+                  format_text("coefficient in '%s' of '%s'", first->name, second->name));
   return name;
 }
 
-void write_tendon_link(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link) {
-  const struct Tendon *first = &robot->tendons[link->tendons[0]], *second = &robot->tendons[link->tendons[1]];
-  char *residual = format_text("%s - (%s)", extension_of(first), number(link->coefficient[0]));
-  for (int power = 1; power < TENDON_POWERS; power++)
-    if (link->coefficient[power] != 0)
-      residual = format_text("%s - %s*(%s)^%d", residual, coefficient_of(writer, robot, link, power),
-                             extension_of(second), power);
+void write_coupling(const struct Writer *writer, const struct Coupling *coupling) {
+  const struct CoupledPart *first = &coupling->parts[0], *second = &coupling->parts[1];
+  char *residual = format_text("%s - (%s)", displacement_of(first), number(coupling->coefficient[0]));
+  for (int power = 1; power < COUPLING_POWERS; power++)
+    if (coupling->coefficient[power] != 0)
+      residual =
+          format_text("%s - %s*(%s)^%d", residual, power_of(writer, coupling, power), displacement_of(second), power);
   xmlNodePtr constraint = write_element(writer, "constraint");
-  set_attribute(constraint, "name", robot_symbol(link->name));
+  set_attribute(constraint, "name", robot_symbol(coupling->name));
   set_attribute(constraint, "unit", copy_text(transmission_unit(&first->transmission)));
   set_content(constraint, residual);
 }

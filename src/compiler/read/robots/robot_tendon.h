@@ -1,4 +1,4 @@
-/* Converts tendons: elements along a transmission, and constraints between two tendons. */
+/* Converts tendons: elements along a transmission, and constraints between two tendons or joints. */
 #pragma once
 
 #include "read/robots/description/robot.h"
@@ -7,5 +7,5 @@
 /* Writes the length of a tendon as an output, and the elements that act along it. */
 void write_tendon(const struct Writer *writer, const struct Tendon *tendon);
 
-/* Writes the constraint that makes one tendon's length a function of another's. */
-void write_tendon_link(const struct Writer *writer, const struct Robot *robot, const struct TendonLink *link);
+/* Writes the constraint that makes a tendon's length or a joint's position a function of another's. */
+void write_coupling(const struct Writer *writer, const struct Coupling *coupling);

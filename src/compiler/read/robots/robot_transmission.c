@@ -114,44 +114,111 @@ void write_limited_forces(const struct Writer *writer, const struct RobotJoint *
                     format_text("%s*%s", ratio, clamped(joint->actuator_limits, joint->actuator_forces)));
 }
 
+/* Expressions of an actuator: its control or activation, length and rate times the gear. */
+struct ActuatorTerms {
+  char *name, *control, *length, *rate;
+  bool slides;
+};
+
 /*
- * The control of a servo is a position, if gain = -bias[1], or a velocity, if gain = -bias[2] without a spring. Any
- * other control is a force or scales one.
+ * Writes the state of a filter or integrator, whose activation replaces the control. It stays where it would pass its
+ * limits, as MuJoCo clips it. unit: of the activation.
+ */
+static char *write_activation(const struct Writer *writer, const struct Actuator *actuator, const char *name,
+                              char *control, const char *unit) {
+  char *state = format_text("%s_activation", name), *rate = control;
+  if (actuator->dynamics == FILTER) {
+    char *time = format_text("%s_time", name);
+    write_parameter(writer, time, actuator->time_constant, "s",
+                    format_text("time constant of the actuator '%s'", actuator->name));
+    rate = format_text("(%s - %s)/%s", control, state, time);
+  }
+  xmlNodePtr node = write_element(writer, "state");
+  set_attribute(node, "name", state);
+  set_attribute(node, "unit", copy_text(unit));
+  set_number(node, "start", actuator->start_activation);
+  const char *driven = actuator->dynamics == FILTER ? format_text("%s - %s", control, state) : control;
+  char *lower = number(actuator->activation[0]), *upper = number(actuator->activation[1]);
+  if (!isnan(actuator->activation[0]))
+    rate = format_text("if((%s > %s or %s > 0) and (%s < %s or 0 > %s), %s, 0)", state, lower, driven, state, upper,
+                       driven, rate);
+  set_attribute(node, "rate", rate);
+  set_attribute(node, "description", format_text("activation of the actuator '%s'", actuator->name));
+  return clamped(actuator->activation, state);
+}
+
+/* Returns the product of the control with the gain by position and velocity, for which it writes parameters. */
+static char *variable_gain(const struct Writer *writer, const struct Actuator *actuator,
+                           const struct ActuatorTerms *terms) {
+  static const char *const by[2] = {"position", "velocity"};
+  static const char *const units[2][2][2] = {{{"N.m/rad", "N.m.s/rad"}, {"N/m", "N.s/m"}},
+                                             {{"1/rad", "s/rad"}, {"1/m", "s/m"}}};
+  bool is_scaled = actuator->gain[0] != 0;
+  char *gain = is_scaled ? number(actuator->gain[0]) : copy_text("");
+  for (int i = 0; i < 2; i++) {
+    if (actuator->gain[i + 1] == 0) continue;
+    char *parameter = format_text("%s_gain_by_%s", terms->name, by[i]);
+    write_parameter(writer, parameter, actuator->gain[i + 1], units[is_scaled][terms->slides][i],
+                    format_text("gain of the actuator '%s' by %s", actuator->name, by[i]));
+    gain = format_text("%s%s%s*%s", gain, *gain != '\0' ? " + " : "", parameter, i == 0 ? terms->length : terms->rate);
+  }
+  return format_text("(%s)*%s", gain, terms->control);
+}
+
+/* Adds the bias to the force, with parameters. */
+static char *with_bias(const struct Writer *writer, const struct Actuator *actuator, const struct ActuatorTerms *terms,
+                       char *force) {
+  const char *name = terms->name;
+  bool slides = terms->slides;
+  if (actuator->bias[1] != 0) {
+    write_parameter(writer, format_text("%s_stiffness", name), -actuator->bias[1], slides ? "N/m" : "N.m/rad",
+                    format_text("force of the actuator '%s' by position", actuator->name));
+    force = format_text("%s - %s_stiffness*%s", force, name, terms->length);
+  }
+  if (actuator->bias[2] != 0) {
+    write_parameter(writer, format_text("%s_damping", name), -actuator->bias[2], slides ? "N.s/m" : "N.m.s/rad",
+                    format_text("force of the actuator '%s' by velocity", actuator->name));
+    force = format_text("%s - %s_damping*%s", force, name, terms->rate);
+  }
+  if (actuator->bias[0] == 0) return force;
+  write_parameter(writer, format_text("%s_bias", name), actuator->bias[0], slides ? "N" : "N.m",
+                  format_text("constant force of the actuator '%s'", actuator->name));
+  return format_text("%s + %s_bias", force, name);
+}
+
+/*
+ * The control of a servo is a position, if gain = -bias[1], or a velocity, if gain = -bias[2] without a spring. The
+ * control of a pure variable gain is a number. Any other control is a force or scales one. The control of an integrator
+ * is the rate of this.
  */
 void write_actuator(const struct Writer *writer, const struct Actuator *actuator) {
   const struct Transmission *transmission = &actuator->transmission;
   bool slides = transmission_slides(transmission), has_spring = actuator->bias[1] != 0,
-       has_damper = actuator->bias[2] != 0;
-  bool is_servo = has_spring && actuator->gain == -actuator->bias[1];
-  bool is_prescribed_motion = !has_spring && has_damper && actuator->gain == -actuator->bias[2];
-  const char *length = transmission_length(transmission), *rate = transmission_rate(transmission);
+       has_damper = actuator->bias[2] != 0, varies = actuator->gain[1] != 0 || actuator->gain[2] != 0;
+  bool is_servo = !varies && has_spring && actuator->gain[0] == -actuator->bias[1];
+  bool is_prescribed_motion = !varies && !has_spring && has_damper && actuator->gain[0] == -actuator->bias[2];
   char *name = format_text("%s_control", robot_symbol(actuator->name)), *gear = number(actuator->gear);
-  char *control = clamped(actuator->control, name), *gain = number(actuator->gain);
-  char *force = is_servo               ? format_text("%s_stiffness*%s", name, control)
-                : is_prescribed_motion ? format_text("%s_damping*%s", name, control)
-                                       : format_text("%s*%s", gain, control);
-  const char *unit = slides ? "N" : "N.m";
-  if (has_spring) {
-    write_parameter(writer, format_text("%s_stiffness", name), -actuator->bias[1], slides ? "N/m" : "N.m/rad",
-                    format_text("force of the actuator '%s' by position", actuator->name));
-    force = format_text("%s - %s_stiffness*(%s*%s)", force, name, gear, length);
-  }
-  if (has_damper) {
-    write_parameter(writer, format_text("%s_damping", name), -actuator->bias[2], slides ? "N.s/m" : "N.m.s/rad",
-                    format_text("force of the actuator '%s' by velocity", actuator->name));
-    force = format_text("%s - %s_damping*(%s*%s)", force, name, gear, rate);
-  }
-  if (actuator->bias[0] != 0) {
-    write_parameter(writer, format_text("%s_bias", name), actuator->bias[0], unit,
-                    format_text("constant force of the actuator '%s'", actuator->name));
-    force = format_text("%s + %s_bias", force, name);
-  }
+  const char *unit = is_servo                           ? slides ? "m" : "rad"
+                     : is_prescribed_motion             ? slides ? "m/s" : "rad/s"
+                     : varies && actuator->gain[0] == 0 ? "1"
+                     : slides                           ? "N"
+                                                        : "N.m";
+  struct ActuatorTerms terms = {.name = name,
+                                .control = clamped(actuator->control, name),
+                                .length = format_text("(%s*%s)", gear, transmission_length(transmission)),
+                                .rate = format_text("(%s*%s)", gear, transmission_rate(transmission)),
+                                .slides = slides};
   xmlNodePtr input = write_element(writer, "input");
-  if (is_servo) unit = slides ? "m" : "rad";
-  if (is_prescribed_motion) unit = slides ? "m/s" : "rad/s";
   set_attribute(input, "name", name);
-  set_attribute(input, "unit", copy_text(unit));
+  set_attribute(input, "unit", actuator->dynamics == INTEGRATOR ? format_text("%s.s-1", unit) : copy_text(unit));
   set_number(input, "start", actuator->start);
   set_attribute(input, "description", format_text("control of the actuator '%s'", actuator->name));
+  if (actuator->dynamics != WITHOUT_STATE)
+    terms.control = write_activation(writer, actuator, name, terms.control, unit);
+  char *force = is_servo               ? format_text("%s_stiffness*%s", name, terms.control)
+                : is_prescribed_motion ? format_text("%s_damping*%s", name, terms.control)
+                : varies               ? variable_gain(writer, actuator, &terms)
+                                       : format_text("%s*%s", number(actuator->gain[0]), terms.control);
+  force = with_bias(writer, actuator, &terms, force);
   write_term(writer, transmission, gear, name, clamped(actuator->force, force), true);
 }

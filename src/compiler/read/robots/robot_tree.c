@@ -312,6 +312,18 @@ static void connect_transmissions(struct Connection *connection) {
   }
 }
 
+/* Resolves joints in couplings; tendons are already resolved. */
+static void connect_couplings(struct Connection *connection) {
+  struct Robot *robot = connection->robot;
+  for (size_t i = 0; i < robot->coupling_count; i++)
+    for (int part = 0; part < 2; part++) {
+      struct Coupling *coupling = &robot->couplings[i];
+      struct Transmission *transmission = &coupling->parts[part].transmission;
+      if (transmission->count == 1 && transmission->terms->joint == NULL)
+        connect_transmission(connection, transmission, "coupling", coupling->name, "", coupling->line);
+    }
+}
+
 static void connect_loops(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = 0; i < robot->loop_count; i++)
@@ -368,6 +380,7 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
     find_leader(&connection, robot->joints[i]);
   if (diagnostics->errors == errors) join_fixed_links(&connection);
   if (diagnostics->errors == errors) connect_transmissions(&connection);
+  if (diagnostics->errors == errors) connect_couplings(&connection);
   if (diagnostics->errors == errors) connect_loops(&connection);
   if (diagnostics->errors == errors) check_inertia(&connection);
   return diagnostics->errors == errors;

@@ -29,6 +29,7 @@ struct RobotLink {
   struct Collision *collisions, *visuals;
   size_t collision_count, visual_count; /* visuals, if any, are drawn instead of collisions */
   struct RigidBody body;                /* in the link's frame; without inertia if the file gives none */
+  double weightless;                    /* share of its weight that a force at its centre of mass balances */
   /* Results of robot_connect(): */
   struct RobotJoint *joint;                     /* that moves the link relative to its parent; NULL for the root */
   struct RobotLink *first_child, *next_sibling; /* in the order of the file */
@@ -102,23 +103,40 @@ struct Tendon {
   double start;      /* length with all joints as placed */
 };
 
-/* Coefficients of the polynomial between two tendons, as in MuJoCo's polycoef. */
-enum { TENDON_POWERS = 5 };
+/* Coefficients of the polynomial between two tendons or joints, as in MuJoCo's polycoef. */
+enum { COUPLING_POWERS = 5 };
 
-/* A constraint: the extension of one tendon beyond its start length is a polynomial of that of another. */
-struct TendonLink {
+/* A tendon or joint in a coupling, and its length or position with all joints as placed. */
+struct CoupledPart {
   char *name;
-  long line;
-  size_t tendons[2];                 /* indices into the robot's tendons */
-  double coefficient[TENDON_POWERS]; /* of the powers from 0 on; only that of power 0 if there is no second tendon */
+  struct Transmission transmission;
+  double start;
 };
 
-/* A force along a transmission: gear*(gain*control + bias[0] + bias[1]*gear*length + bias[2]*gear*rate). */
+/* A constraint: the displacement of one tendon or joint from its start is a polynomial of that of another. */
+struct Coupling {
+  char *name;
+  long line;
+  struct CoupledPart parts[2];
+  double coefficient[COUPLING_POWERS]; /* of the powers from 0 on; only that of power 0 if there is no second part */
+};
+
+/* Dynamics between the control and the activation, which acts in its place. */
+enum ActuatorDynamics { WITHOUT_STATE, FILTER, INTEGRATOR };
+
+/*
+ * A force along a transmission: gear*(gain*control + bias[0] + bias[1]*gear*length + bias[2]*gear*rate). The gain is
+ * gain[0] + gain[1]*gear*length + gain[2]*gear*rate.
+ */
 struct Actuator {
   char *name;
   long line;
   struct Transmission transmission; /* of one joint, or that of a tendon */
-  double gear, gain, bias[3];
+  double gear, gain[3], bias[3];
+  enum ActuatorDynamics dynamics;
+  double time_constant; /* s; of a filter */
+  double activation[2]; /* limits of the activation; NAN for none */
+  double start_activation;
   double start;                /* of the control */
   double control[2], force[2]; /* limits of the control, and of the force before the gear; NAN for none */
 };
@@ -153,8 +171,8 @@ struct Robot {
   struct Tendon *tendons;
   struct Actuator *actuators;
   struct RobotLoop *loops;
-  struct TendonLink *tendon_links;
-  size_t link_count, joint_count, tendon_count, actuator_count, loop_count, tendon_link_count;
+  struct Coupling *couplings;
+  size_t link_count, joint_count, tendon_count, actuator_count, loop_count, coupling_count;
   double gravity[3];        /* m/s2 */
   struct Collision *ground; /* plane of the ground, normal to its z axis; NULL for z = 0 */
   struct RobotLink *root;

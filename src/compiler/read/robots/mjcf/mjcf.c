@@ -46,12 +46,13 @@ static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
 
 static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const units[] = {"degree", "radian", NULL}, *const where[] = {"auto", "true", "false", NULL};
-  static const char *const rejected[] = {"settotalmass", "boundmass", "boundinertia", "balanceinertia"};
+  static const char *const rejected[] = {"boundmass", "boundinertia", "balanceinertia"};
   if (has_attribute(node, "angle")) mjcf->angle = mjcf_word(mjcf, node, "angle", units) == 1 ? 1 : M_PI / 180;
   if (has_attribute(node, "autolimits")) mjcf->has_automatic_limits = attribute_is(node, "autolimits", "true");
   if (has_attribute(node, "inertiafromgeom"))
     mjcf->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
   for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
+  mjcf->total_mass = mjcf_number(mjcf, node, "settotalmass", mjcf->total_mass);
   mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
     report_error(mjcf->file.diagnostics, line_of(node), "coordinate=\"%s\" of <compiler> is not read; expected local",
@@ -118,10 +119,12 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *j
 
 /* Reads a joint with several coordinates: isotropic damping and armature. Reports features of single coordinates. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
-  static const char *const rejected[] = {"stiffness", "frictionloss", "springdamper", "actuatorfrcrange"};
+  static const char *const rejected[] = {"stiffness", "springdamper", "actuatorfrcrange"};
   for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
   joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+  if (joint->type == FLOATING) joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
+  else mjcf_reject(mjcf, node, "frictionloss");
   if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
 }
 
@@ -201,7 +204,7 @@ static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   struct Placement placement = mjcf_placement(mjcf, node);
   struct Chain chain = {.body = name, .parent = parent, .placement = placement_within(outer, &placement)};
   struct RobotLink *link = mjcf_add_link(mjcf, node, name);
-  mjcf_reject(mjcf, node, "gravcomp");
+  link->weightless = mjcf_number(mjcf, node, "gravcomp", 0);
   if (attribute_is(node, "mocap", "true"))
     warn_unread(&mjcf->file, line_of(node), "mocap of <body>, which stands still,",
                 "a <freejoint>, or a frame that inputs move in a <system> that includes the robot");
@@ -257,6 +260,15 @@ static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
   read_children(mjcf, node, mjcf->file.robot->links[0]->name, &no_displacement);
 }
 
+/* Scales all masses and inertias to the sum that the file sets. */
+static void set_total_mass(struct Mjcf *mjcf) {
+  const struct Robot *robot = mjcf->file.robot;
+  double sum = 0;
+  for (size_t i = 0; i < robot->link_count; i++) sum += robot->links[i]->body.mass;
+  for (size_t i = 0; i < robot->link_count && mjcf->total_mass > 0 && sum > 0; i++)
+    robot->links[i]->body = body_scaled(&robot->links[i]->body, mjcf->total_mass / sum);
+}
+
 static void check_world(struct Mjcf *mjcf) {
   xmlNodePtr node = mjcf->root->children;
   while (node != NULL && !is_element(node, "worldbody")) node = node->next;
@@ -274,6 +286,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
                       .bodies = names_create(),
                       .placements = names_create(),
                       .angle = M_PI / 180,
+                      .total_mass = -1,
                       .euler_sequence = "xyz",
                       .inertia_groups = {0, 5},
                       .has_automatic_limits = true};
@@ -298,6 +311,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "worldbody", false, mjcf_note_bodies);
   for_each(&mjcf, "worldbody", false, read_geoms_of_world);
   for_each(&mjcf, "worldbody", false, read_world);
+  set_total_mass(&mjcf);
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);
   for_each(&mjcf, "actuator", true, mjcf_read_actuator);
   for_each(&mjcf, "equality", true, mjcf_read_equality);

@@ -8,27 +8,79 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
-/* Reads gain and bias, as MuJoCo defines them for each kind of actuator. */
-static void read_law(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
-  static const char *const biases[] = {"none", "affine", NULL};
-  actuator->gain = 1;
-  if (is_element(node, "position")) {
-    actuator->gain = mjcf_number_not_negative(mjcf, node, "kp", 1);
-    actuator->bias[1] = -actuator->gain;
-    actuator->bias[2] = -mjcf_number_not_negative(mjcf, node, "kv", 0);
-  } else if (is_element(node, "velocity")) {
-    actuator->gain = mjcf_number_not_negative(mjcf, node, "kv", 1);
-    actuator->bias[2] = -actuator->gain;
-  } else if (is_element(node, "general")) {
-    static const char *const gains[] = {"fixed", NULL}, *const dynamics[] = {"none", NULL};
-    double gain[10] = {1}, bias[10] = {0};
-    mjcf_word(mjcf, node, "dyntype", dynamics);
-    mjcf_word(mjcf, node, "gaintype", gains);
-    mjcf_numbers(mjcf, node, "gainprm", 1, 10, gain);
-    mjcf_numbers(mjcf, node, "biasprm", 1, 10, bias);
-    actuator->gain = gain[0];
-    if (mjcf_word(mjcf, node, "biastype", biases) == 1) memcpy(actuator->bias, bias, sizeof actuator->bias);
-  }
+/* Sets the dynamics of a filter, or none if the time constant is 0. */
+static void set_filter(struct Actuator *actuator, double time_constant) {
+  actuator->dynamics = time_constant > 0 ? FILTER : WITHOUT_STATE;
+  actuator->time_constant = time_constant;
+}
+
+static void read_motor(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  (void)mjcf, (void)node;
+  actuator->gain[0] = 1;
+}
+
+static void read_position(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "kp", 1);
+  actuator->bias[1] = -actuator->gain[0];
+  actuator->bias[2] = -mjcf_number_not_negative(mjcf, node, "kv", 0);
+  set_filter(actuator, mjcf_number_not_negative(mjcf, node, "timeconst", 0));
+}
+
+static void read_integrated_velocity(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  read_position(mjcf, node, actuator);
+  actuator->dynamics = INTEGRATOR;
+}
+
+static void read_velocity(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "kv", 1);
+  actuator->bias[2] = -actuator->gain[0];
+}
+
+static void read_damper(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  actuator->gain[2] = -mjcf_number_not_negative(mjcf, node, "kv", 1);
+}
+
+static void read_cylinder(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  double diameter = mjcf_number_not_negative(mjcf, node, "diameter", 0);
+  actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "area", 1);
+  if (diameter > 0) actuator->gain[0] = M_PI / 4 * diameter * diameter;
+  mjcf_numbers(mjcf, node, "bias", 3, 3, actuator->bias);
+  set_filter(actuator, mjcf_number_not_negative(mjcf, node, "timeconst", 1));
+}
+
+static void read_general(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  static const char *const biases[] = {"none", "affine", NULL}, *const gains[] = {"fixed", "affine", NULL};
+  static const char *const dynamics[] = {"none", "integrator", "filter", "filterexact", NULL};
+  double gain[10] = {1}, bias[10] = {0}, constants[10] = {1};
+  mjcf_numbers(mjcf, node, "gainprm", 1, 10, gain);
+  mjcf_numbers(mjcf, node, "biasprm", 1, 10, bias);
+  mjcf_numbers(mjcf, node, "dynprm", 1, 10, constants);
+  memcpy(actuator->gain, gain, (mjcf_word(mjcf, node, "gaintype", gains) == 1 ? 3 : 1) * sizeof *gain);
+  if (mjcf_word(mjcf, node, "biastype", biases) == 1) memcpy(actuator->bias, bias, sizeof actuator->bias);
+  size_t kind = mjcf_word(mjcf, node, "dyntype", dynamics);
+  if (kind == 1) actuator->dynamics = INTEGRATOR;
+  if (kind > 1 && constants[0] > 0) set_filter(actuator, constants[0]);
+  else if (kind > 1)
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "the time constant %g of dynprm of <general> is not above 0; expected seconds", constants[0]);
+}
+
+/* The kinds of actuators, with the gain, bias and dynamics that MuJoCo defines for each. */
+static const struct {
+  const char *name;
+  void (*read)(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator);
+} kinds[] = {
+    {"motor", read_motor},       {"position", read_position}, {"velocity", read_velocity},
+    {"general", read_general},   {"damper", read_damper},     {"intvelocity", read_integrated_velocity},
+    {"cylinder", read_cylinder},
+};
+
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static size_t kind_of(xmlNodePtr node) {
+  size_t kind = 0;
+  while (kind < KINDS && !is_element(node, kinds[kind].name)) kind++;
+  return kind;
 }
 
 /* Reports ratios to critical damping, which MuJoCo computes from the inertia of the compiled model. */
@@ -39,7 +91,7 @@ static void reject_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuat
                  "dampratio=\"%g\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
                  "MuJoCo's compiled model",
                  ratio);
-  if (actuator->bias[2] > 0 && actuator->gain == -actuator->bias[1])
+  if (actuator->bias[2] > 0 && actuator->gain[0] == -actuator->bias[1])
     report_error(mjcf->file.diagnostics, line_of(node),
                  "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "
                  "damping itself with its sign: actuator_biasprm[2] of MuJoCo's compiled model",
@@ -57,26 +109,28 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, c
 }
 
 /*
- * Limits the control of a servo to a fraction of the range of its joint or tendon. Unknown joints and tendons are
- * reported elsewhere.
+ * Limits the control ("ctrl") or activation ("act") of a servo to a fraction of the range of its joint or tendon.
+ * Unknown joints and tendons are reported elsewhere.
  */
-static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, struct Actuator *actuator) {
+static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *prefix,
+                          double limits[2]) {
   double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
   const char *joint_name = attribute(node, "joint");
-  if (share == 0 || mjcf_is(mjcf, node, "ctrllimited", "false")) return;
+  if (share == 0 || mjcf_is(mjcf, node, format_text("%slimited", prefix), "false")) return;
   const struct RobotJoint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
   if (tendon == NULL && joint == NULL) return;
   double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
   bool is_known = !isnan(lower) && !isnan(upper);
-  if (!is_known || !isnan(actuator->control[0])) {
-    report_error(mjcf->file.diagnostics, line_of(node), "inheritrange of <position> %s",
-                 is_known ? "is beside a ctrlrange; expected one of them"
-                          : "is a share of the range of its joint or tendon, which has none; expected ctrlrange");
+  if (!is_known || !isnan(limits[0])) {
+    report_error(mjcf->file.diagnostics, line_of(node), "inheritrange of <%s> is %s %srange%s",
+                 (const char *)node->name,
+                 is_known ? "beside a" : "a share of the range of its joint or tendon, which has none; expected",
+                 prefix, is_known ? "; expected one of them" : "");
     return;
   }
   double middle = (lower + upper) / 2, half = share * (upper - lower) / 2;
-  actuator->control[0] = middle - half;
-  actuator->control[1] = middle + half;
+  limits[0] = middle - half;
+  limits[1] = middle + half;
 }
 
 /* Reports a spatial tendon if a joint limits actuator forces, as its force on single joints is not computed. */
@@ -93,10 +147,10 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
 }
 
 void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const rejected[] = {"timeconst", "actdim", "delay", "damping", "armature"};
+  static const char *const rejected[] = {"actdim", "delay", "damping", "armature"};
   struct Robot *robot = mjcf->file.robot;
-  if (!is_element(node, "motor") && !is_element(node, "position") && !is_element(node, "velocity") &&
-      !is_element(node, "general")) {
+  size_t kind = kind_of(node);
+  if (kind == KINDS) {
     mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint or tendon");
     return;
   }
@@ -109,16 +163,18 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
   actuator.gear = gear[0];
   mjcf_check_laws(mjcf, node);
-  read_law(mjcf, node, &actuator);
+  kinds[kind].read(mjcf, node, &actuator);
   reject_ratio(mjcf, node, &actuator);
   mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
-  if (is_element(node, "position")) inherit_range(mjcf, node, tendon, &actuator);
+  mjcf_limits(mjcf, node, "actrange", "actlimited", actuator.activation);
+  if (is_element(node, "position")) inherit_range(mjcf, node, tendon, "ctrl", actuator.control);
+  else if (is_element(node, "intvelocity")) inherit_range(mjcf, node, tendon, "act", actuator.activation);
   else mjcf_reject(mjcf, node, "inheritrange");
   mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
   check_limited_joints(mjcf, node, &actuator);
   double group = mjcf_number(mjcf, node, "group", 0);
   if (group >= 0 && group < ACTUATOR_GROUPS && mjcf->is_off[(size_t)group]) {
-    actuator.gain = 0;
+    memset(actuator.gain, 0, sizeof actuator.gain);
     memset(actuator.bias, 0, sizeof actuator.bias);
     actuator.force[0] = actuator.force[1] = NAN;
   }

@@ -57,13 +57,14 @@ static const struct Attributes table[] = {
     {"equality connect weld joint tendon", "solref solimp", rigid, ALWAYS_ACTS},
     {"equality connect weld", "active anchor body1 body2 class name relpose site1 site2 torquescale", NULL,
      ALWAYS_ACTS},
-    {"general motor position velocity",
+    {"general motor position velocity damper intvelocity cylinder",
      "actdim actearly actlimited actrange armature biasprm biastype class cranklength ctrllimited ctrlrange damping "
      "dampratio delay dynprm dyntype forcelimited forcerange gainprm gaintype gear group inheritrange interp joint kp "
      "kv "
-     "lengthrange name nsample tendon timeconst user",
+     "lengthrange name nsample tendon timeconst user area diameter bias",
      NULL, ALWAYS_ACTS},
-    {"general motor position velocity", "cranksite slidersite jointinparent site refsite body ffrange input velrange",
+    {"general motor position velocity damper intvelocity cylinder",
+     "cranksite slidersite jointinparent site refsite body ffrange input velrange",
      "an actuator at a joint or tendon, without it", ALWAYS_ACTS},
     {0},
 };

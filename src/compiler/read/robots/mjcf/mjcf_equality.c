@@ -8,27 +8,62 @@
 #include "read/robots/mjcf/mjcf_tree.h"
 #include "read/xml/nodes.h"
 
-/* Reads a linear relation of two joints, measured from their ref, as mimicking. */
+/* Returns the part of a coupling that is one joint. */
+static struct CoupledPart part_of_joint(struct RobotJoint *joint) {
+  struct TransmissionTerm *term = allocate(1, sizeof *term);
+  *term = (struct TransmissionTerm){.joint_name = joint->name, .coefficient = 1};
+  return (struct CoupledPart){
+      .name = joint->name, .transmission = {.terms = term, .count = 1}, .start = joint->start.position[0]};
+}
+
+/* Adds a coupling. Without a second part, only the constant of its polynomial remains. */
+static void add_coupling(struct Mjcf *mjcf, struct Coupling coupling) {
+  struct Robot *robot = mjcf->file.robot;
+  for (int power = 1; power < COUPLING_POWERS && coupling.parts[1].name == NULL; power++)
+    coupling.coefficient[power] = 0;
+  robot->couplings = make_room(robot->couplings, robot->coupling_count, sizeof *robot->couplings);
+  robot->couplings[robot->coupling_count++] = coupling;
+}
+
+/* Returns the joint that an attribute names; NULL after reporting that there is none. */
+static struct RobotJoint *find_joint(struct Mjcf *mjcf, xmlNodePtr node, const char *attribute_name) {
+  const char *name = required_attribute(&mjcf->file, node, attribute_name);
+  struct RobotJoint *joint = mjcf_joint(mjcf, name);
+  if (joint == NULL && *name != '\0')
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "there is no joint '%s' for an <equality>; expected an existing name", name);
+  return joint;
+}
+
+/* Makes the first joint mimic the second one. Both are measured from their ref. */
+static void let_mimic(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint, const struct RobotJoint *other,
+                      const double coefficient[2]) {
+  if (joint->mimicked_name != NULL)
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "the joint '%s' follows '%s' already; expected one <equality> for each joint1", joint->name,
+                 joint->mimicked_name);
+  joint->mimicked_name = other->name;
+  joint->multiplier = coefficient[1];
+  joint->offset = joint->start.position[0] + coefficient[0] - coefficient[1] * other->start.position[0];
+}
+
+/* Reads a polynomial relation of two joints, or a constant position of one. A linear one makes joint1 mimic joint2. */
 static void read_joints(struct Mjcf *mjcf, xmlNodePtr node) {
-  double c[5] = {0, 1};
-  char *names[2] = {required_attribute(&mjcf->file, node, "joint1"), required_attribute(&mjcf->file, node, "joint2")};
-  struct RobotJoint *joints[2] = {mjcf_joint(mjcf, names[0]), mjcf_joint(mjcf, names[1])};
-  mjcf_numbers(mjcf, node, "polycoef", 1, 5, c);
-  for (int i = 0; i < 2; i++)
-    if (joints[i] == NULL && *names[i] != '\0')
-      report_error(mjcf->file.diagnostics, line_of(node),
-                   "there is no joint '%s' for an <equality>; expected an existing name", names[i]);
-  if (c[2] != 0 || c[3] != 0 || c[4] != 0)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "polycoef of <joint> is not linear; expected a <constraint> in a <system> that includes the robot");
-  if (joints[0] == NULL || joints[1] == NULL) return;
-  if (joints[0]->mimicked_name != NULL)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the joint '%s' follows '%s' already; expected one <equality> for each joint1", names[0],
-                 joints[0]->mimicked_name);
-  joints[0]->mimicked_name = names[1];
-  joints[0]->multiplier = c[1];
-  joints[0]->offset = joints[0]->start.position[0] + c[0] - c[1] * joints[1]->start.position[0];
+  struct Coupling coupling = {.name = attribute(node, "name"), .line = line_of(node), .coefficient = {0, 1}};
+  double *c = coupling.coefficient;
+  bool has_other = has_attribute(node, "joint2");
+  struct RobotJoint *joint = find_joint(mjcf, node, "joint1"),
+                    *other = has_other ? find_joint(mjcf, node, "joint2") : NULL;
+  mjcf_numbers(mjcf, node, "polycoef", 1, COUPLING_POWERS, c);
+  if (joint == NULL || (has_other && other == NULL)) return;
+  if (other != NULL && c[2] == 0 && c[3] == 0 && c[4] == 0) {
+    let_mimic(mjcf, node, joint, other, c);
+    return;
+  }
+  if (coupling.name == NULL) coupling.name = format_text("joints%zu", mjcf->file.robot->coupling_count + 1);
+  coupling.parts[0] = part_of_joint(joint);
+  if (other != NULL) coupling.parts[1] = part_of_joint(other);
+  add_coupling(mjcf, coupling);
 }
 
 /* The ends of a loop: two sites, or two bodies. The second body is the world if the element names none. */
@@ -103,25 +138,24 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
 /* Reads a polynomial relation of two tendons, or a constant length of one. */
 static void read_tendons(struct Mjcf *mjcf, xmlNodePtr node) {
   struct Robot *robot = mjcf->file.robot;
-  struct TendonLink link = {.name = attribute(node, "name"), .line = line_of(node), .coefficient = {0, 1}};
-  if (link.name == NULL) link.name = format_text("tendons%zu", robot->tendon_link_count + 1);
-  mjcf_numbers(mjcf, node, "polycoef", 1, TENDON_POWERS, link.coefficient);
+  struct Coupling coupling = {.name = attribute(node, "name"), .line = line_of(node), .coefficient = {0, 1}};
+  if (coupling.name == NULL) coupling.name = format_text("tendons%zu", robot->coupling_count + 1);
+  mjcf_numbers(mjcf, node, "polycoef", 1, COUPLING_POWERS, coupling.coefficient);
   bool has_other = has_attribute(node, "tendon2");
   const char *names[2] = {required_attribute(&mjcf->file, node, "tendon1"), attribute(node, "tendon2")};
   if (*names[0] == '\0') return; /* the error has been reported */
   if (has_other && strcmp(names[0], names[1]) == 0) {
-    report_error(mjcf->file.diagnostics, link.line, "the tendon '%s' is its own tendon2; expected another one",
+    report_error(mjcf->file.diagnostics, coupling.line, "the tendon '%s' is its own tendon2; expected another one",
                  names[0]);
     return;
   }
   for (int i = 0; i < (has_other ? 2 : 1); i++) {
     const struct Tendon *tendon = mjcf_tendon(mjcf, node, names[i]);
     if (tendon == NULL) return;
-    link.tendons[i] = (size_t)(tendon - robot->tendons);
+    coupling.parts[i] =
+        (struct CoupledPart){.name = tendon->name, .transmission = tendon->transmission, .start = tendon->start};
   }
-  for (int power = 1; power < TENDON_POWERS && !has_other; power++) link.coefficient[power] = 0;
-  robot->tendon_links = make_room(robot->tendon_links, robot->tendon_link_count, sizeof *robot->tendon_links);
-  robot->tendon_links[robot->tendon_link_count++] = link;
+  add_coupling(mjcf, coupling);
 }
 
 void mjcf_read_equality(struct Mjcf *mjcf, xmlNodePtr node) {

@@ -79,5 +79,10 @@ void mjcf_read_keyframe(struct Mjcf *mjcf) {
     if (position != NULL) position += positions[joint->type];
     if (velocity != NULL) velocity += velocities[joint->type];
   }
+  size_t states = 0;
+  for (size_t i = 0; i < robot->actuator_count; i++) states += robot->actuators[i].dynamics != WITHOUT_STATE;
+  const double *activation = read_list(mjcf, key, "act", states);
+  for (size_t i = 0; i < robot->actuator_count && activation != NULL; i++)
+    if (robot->actuators[i].dynamics != WITHOUT_STATE) robot->actuators[i].start_activation = *activation++;
   for (size_t i = 0; i < robot->actuator_count && control != NULL; i++) robot->actuators[i].start = control[i];
 }

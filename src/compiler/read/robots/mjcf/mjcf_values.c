@@ -60,8 +60,9 @@ static bool is_actuator(xmlNodePtr node) {
 }
 
 /* Attributes whose meaning depends on the kind of actuator. The others are common to all kinds. */
-static const char *const of_laws[] = {"kp",     "kv",       "dampratio", "timeconst", "inheritrange", "dyntype",
-                                      "dynprm", "gaintype", "gainprm",   "biastype",  "biasprm",      NULL};
+static const char *const of_laws[] = {"kp",      "kv",     "dampratio", "timeconst", "inheritrange",
+                                      "dyntype", "dynprm", "gaintype",  "gainprm",   "biastype",
+                                      "biasprm", "area",   "diameter",  "bias",      NULL};
 
 /* True if this <default> applies to the attribute of the element: common ones of actuators to all kinds. */
 static bool is_default_of(xmlNodePtr node, xmlNodePtr element, const char *name) {
@@ -86,14 +87,15 @@ static bool defines_law(xmlNodePtr node) {
 
 /*
  * True if a <default> makes MuJoCo's gain and bias of the actuator differ from those read here. In MuJoCo each
- * <default> sets the gain and bias of all kinds of actuators. A <general> sets only what it names, and a <motor>
- * resets them. *is_set_back: a <motor> in an inner class, or further down, has reset them.
+ * <default> that names one sets the gain and bias of all kinds of actuators. For a <general> every <default> of another
+ * kind does so. A <motor> resets them. *is_set_back: a <motor> in an inner class, or further down, has reset them.
  */
 static bool overrides_law(xmlNodePtr found, xmlNodePtr node, bool *is_set_back) {
   if (!is_actuator(found)) return false;
   if (is_element(found, (const char *)node->name)) return *is_set_back && defines_law(found);
   *is_set_back |= is_element(found, "motor");
-  return !is_element(found, "motor") && (!is_element(found, "general") || defines_law(found));
+  bool may_inherit = is_element(node, "general") && !is_element(found, "general");
+  return !is_element(found, "motor") && (may_inherit || defines_law(found));
 }
 
 void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node) {

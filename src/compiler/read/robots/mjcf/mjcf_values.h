@@ -38,6 +38,7 @@ struct Mjcf {
   bool has_automatic_limits;
   enum InertiaFromGeoms inertia_from_geoms;
   double inertia_groups[2];             /* geoms of groups in this range have a mass */
+  double total_mass;                    /* kg; of all bodies together; -1 for the sum in the file */
   size_t unnamed_count;                 /* number of bodies without a name so far */
   char *mesh_folder;                    /* folder of mesh files, relative to the robot's file; NULL for its own */
   struct Names *meshes;                 /* used meshes by name -> struct MjcfMesh */
