@@ -34,7 +34,9 @@ RAMP = """<system name="Ramp"><parameter name="mu" start="0.2"/><parameter name=
   <coordinate name="x" velocity="vx" unit="m" velocityStart="2.4"/><coordinate name="y" velocity="vy" unit="m" velocityStart="1.8"/><particle mass="1" x="x" y="y"/><gravity y="-g"/>
   <constraint name="ramp" unit="m">0.8*y - 0.6*x - 0.8*l</constraint><contact name="wall" gap="0.4 - x" unit="m" restitution="e"/>
   <friction name="rub" velocity="0.8*vx + 0.6*vy" force="mu*abs(ramp.force)"/></system>"""
-SWITCHED = {"Ramp": (RAMP, ["mu", "g", "e", "l"]), "Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"])}
+# Water that rises to a weir and over it, where the root of the flow begins.
+WEIR = """<system name="Weir"><parameter name="q" start="0.1"/><parameter name="k" start="0.5"/><state name="h" start="0.5" rate="q - k*sqrt(max(0, h - 1))"/></system>"""
+SWITCHED = {"Ramp": (RAMP, ["mu", "g", "e", "l"]), "Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"]), "Weir": (WEIR, ["q", "k"])}
 SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
            "Worked": (WORKED, list(AT)), "Held": (CONSTRAINED, CONSTRAINED_BY), "Twice": (CONSTRAINED_TWICE, CONSTRAINED_BY), "Flat": (FLAT, ["g"])}  # fmt: skip
 
@@ -97,6 +99,22 @@ def test_through_impacts(lagrange_fmu, monkeypatch):  # noqa: F811
     _, derivatives = motion_through_events("Ball", ["h", "v"], times, at, monkeypatch, ways)
     assert len(ways) == 1 and 0.999 < ways[0] / (fall * (1 + 2 * 0.7 / 0.3)) < 1
     assert derivatives[-1] == pytest.approx(np.zeros((2, 3)), abs=1e-4)
+
+
+def test_through_the_onset_of_a_root(lagrange_fmu, monkeypatch):  # noqa: F811
+    """w = sqrt(h - 1) is given by t - 0.5/q = -2 w/k - 2 q/k^2 log(1 - k w/q)."""
+    at, times = {"q": 0.1, "k": 0.5}, [0.0, 1.0, 10.0]
+
+    def level(q, k):
+        time = lambda w: -2 * w / k - 2 * q / k**2 * mpmath.log(1 - k * w / q) - 10 + 0.5 / q
+        return 1 + mpmath.findroot(time, (0.01 * q / k, q / k * (1 - mpmath.mpf("1e-9"))), solver="anderson") ** 2
+
+    values, derivatives = motion_through_events("Weir", ["h"], times, at, monkeypatch, [])
+    assert derivatives[1, 0] == pytest.approx([1, 0], abs=1e-12)
+    assert values[-1, 0] == pytest.approx(float(level(**at)), rel=1e-8)
+    for name, slope in zip(at, derivatives[-1, 0]):
+        moved = [level(**at | {name: at[name] + sign * mpmath.mpf("1e-8")}) for sign in (1, -1)]
+        assert slope == pytest.approx(float((moved[0] - moved[1]) / mpmath.mpf("2e-8")), rel=1e-7)
 
 
 def test_through_small_bounces(lagrange_fmu, monkeypatch):  # noqa: F811

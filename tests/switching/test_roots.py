@@ -1,5 +1,5 @@
 """
-Roots that begin and end at an event, such as sqrt(max(0, h - 1)) of a weir, against closed forms, with all methods.
+Roots that begin and end at an event, such as sqrt(max(0, h - 1)) of a weir, against closed forms, with all methods and in model exchange.
 
 The slope of a root is infinite where it begins, but the motion is unique there: of u' = q - k sqrt(u) from 0, w = sqrt(u) is
 given by t = -2 w/k - 2 q/k^2 log(1 - k w/q).
@@ -12,6 +12,7 @@ import mpmath
 import numpy as np
 import pytest
 
+from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from fmu import Instance, archive, build_systems
@@ -26,6 +27,10 @@ SYSTEMS = {
     "Orifice": '<state name="p" start="-1" rate="1 - 0.5*if(p > 0, sqrt(p), -sqrt(-p))"/>',
     "Spring": '<parameter name="n" start="1.5"/><coordinate name="x" velocity="v" start="-1" velocityStart="1"/><particle mass="1" x="x"/><potential>max(0, x)^n</potential>',
     "Pulses": '<state name="y" rate="sqrt(max(0, sin(time)))"/>',
+    "Tank": '<state name="h" start="1" rate="-0.5*sqrt(max(0, h))"/><output name="flow">0.5*sqrt(max(0, h))</output>',
+    "CheckValve": '<state name="a" start="1" rate="if(a > b, -0.5*sqrt(a - b), 0)"/><state name="b" rate="if(a > b, 0.5*sqrt(a - b), 0)"/>',
+    "Levels": '<state name="a" start="1" rate="if(a > b, -0.5*sqrt(a - b), 0.5*sqrt(b - a))"/><state name="b" rate="if(a > b, 0.5*sqrt(a - b), -0.5*sqrt(b - a))"/>',
+    "Tide": '<state name="h" start="1" rate="0.3*sin(2*time) - 0.5*sqrt(max(0, h))"/>',
     "TwoWeirs": """<state name="h" start="-1" rate="1 - 0.5*sqrt(max(0, h))"/><state name="g" start="-0.25" rate="0.5*exp(-g)*sqrt(max(0, h)) - 0.4*sqrt(max(0, g))"/>""",
 }
 
@@ -129,6 +134,89 @@ def test_methods_agree_about_two_weirs():
     np.testing.assert_allclose([end[1] for end in ends], ends[0][1], rtol=0, atol=2e-7)
 
 
-def test_model_exchange_passes_a_crest():
-    result = fmpy.simulate_fmu(str(archive("WeirByTaylor")), fmi_type="ModelExchange", stop_time=10, output_interval=0.5, relative_tolerance=1e-9, output=["h"])
-    np.testing.assert_allclose(result["h"], [min(1, 0.5 + 0.1 * t) + outflow(t - 5, 0.1) for t in result["time"]], rtol=0, atol=1e-6)
+def test_a_root_that_has_not_begun_has_the_derivative_0():
+    """Below the crest the flow does not depend on the level, although the root of 0 has an infinite slope."""
+    for method in METHODS:
+        instance = Instance(f"WeirBy{method.title()}").initialize({"h": 0.5})
+        rate = [instance.fmu.getDirectionalDerivative(instance.vr("der(h)"), instance.vr(name), [1.0])[0] for name in ("q", "k", "c", "h")]
+        np.testing.assert_array_equal(rate, [1, 0, 0, 0])
+        instance.free()
+
+
+def drained(t):
+    """h' = -sqrt(h)/2 from 1: it ends at 4 s."""
+    return np.maximum(0, 1 - np.asarray(t) / 4) ** 2
+
+
+def levelled(t):
+    """a - b = (1 - t/2)^2, and a + b = 1."""
+    return 0.5 + 0.5 * np.maximum(0, 1 - np.asarray(t) / 2) ** 2
+
+
+@EVERY
+@STEPS
+@pytest.mark.parametrize("name, state, exact", [("Tank", "h", drained), ("CheckValve", "a", levelled), ("Levels", "a", levelled)])
+def test_a_root_ends(method, step, name, state, exact):
+    time, value = motion(name, method, step, 10.0, state)
+    np.testing.assert_allclose(value, exact(time), rtol=0, atol=2e-8)
+
+
+@EVERY
+@STEPS
+def test_a_tide_falls_below_the_end_of_a_root_and_rises_again(method, step):
+    time, h = motion("Tide", method, step, 10.0, "h")
+    np.testing.assert_allclose(h, tide(time), rtol=0, atol=3e-7)
+
+
+def tide(times):
+    """h by SciPy, from one zero to the next."""
+    values, t, h = {}, 0.0, 1.0
+    while t < 10:
+        flow = 0.5 if h > 0 or (h == 0 and math.sin(2 * t) > 0) else 0.0
+        zero = lambda t, y: y[0]
+        zero.terminal, zero.direction = True, -1 if flow else 1
+        rate = lambda t, y, flow=flow: [0.3 * math.sin(2 * t) - flow * math.sqrt(max(0, y[0]))]
+        run = solve_ivp(rate, [t, 10], [h], "Radau" if flow else "DOP853", rtol=1e-10, atol=1e-12, events=zero, dense_output=True)
+        values.update({s: run.sol(s)[0] for s in times if t <= s <= run.t[-1]})
+        t, h = run.t[-1], 0.0
+    return [values[s] for s in times]
+
+
+def exchanged(name, step, tolerance, *names, **values):
+    """Returns the time, and the names, by the CVODE of FMPy, whose trial steps lead beyond the ends of roots."""
+    result = fmpy.simulate_fmu(
+        str(archive(f"{name}ByTaylor")), fmi_type="ModelExchange", start_values=values, stop_time=10, output_interval=step, relative_tolerance=tolerance, output=names
+    )
+    assert result["time"][-1] == pytest.approx(10)
+    return [result["time"], *(result[word] for word in names)]
+
+
+EXCHANGES = pytest.mark.parametrize("step, tolerance", [(0.5, 1e-5), (0.5, 1e-8), (10, 1e-7)])
+
+
+@EXCHANGES
+def test_model_exchange_passes_ends_of_roots(step, tolerance):
+    time, h, flow = exchanged("Tank", step, tolerance, "h", "flow")
+    np.testing.assert_allclose(h, drained(time), rtol=0, atol=10 * tolerance)
+    np.testing.assert_allclose(flow, 0.5 * np.sqrt(drained(time)), rtol=0, atol=10 * tolerance**0.5)
+    for name in ("CheckValve", "Levels"):
+        time, a = exchanged(name, step, tolerance, "a")
+        np.testing.assert_allclose(a, levelled(time), rtol=0, atol=10 * tolerance)
+    time, h = exchanged("Weir", step, tolerance, "h", q=0, h=2)
+    np.testing.assert_allclose(h, 1 + drained(time), rtol=0, atol=20 * tolerance)
+    time, h = exchanged("Tide", step, tolerance, "h")
+    np.testing.assert_allclose(h, tide(time), rtol=0, atol=100 * tolerance)
+
+
+@EXCHANGES
+def test_model_exchange_passes_onsets_of_roots(step, tolerance):
+    time, h = exchanged("Weir", step, tolerance, "h")
+    np.testing.assert_allclose(h, [min(1, 0.5 + 0.1 * t) + outflow(t - 5, 0.1) for t in time], rtol=0, atol=100 * tolerance)
+    time, h = exchanged("RisingCrest", step, tolerance, "h")
+    np.testing.assert_allclose(h, [-0.5 + 2 * t if t < 0.5 else t + outflow(t - 0.5, 1) for t in time], rtol=0, atol=100 * tolerance)
+    time, p = exchanged("Orifice", step, tolerance, "p")
+    passes = 4 - 8 * np.log(1.5)
+    late = time > passes
+    np.testing.assert_allclose(p[late], [outflow(t - passes, 1) for t in time[late]], rtol=0, atol=100 * tolerance)
+    time, x, v = exchanged("Spring", step, tolerance, "x", "v")
+    np.testing.assert_allclose(v**2 / 2 + np.maximum(0, x) ** 1.5, 0.5, rtol=0, atol=500 * tolerance)

@@ -43,10 +43,10 @@ static Node along_operands(struct Graph *graph, Node node, Node along_left, Node
   if (vertex.operation == GUARD) return function(graph, GUARD, vertex.left, along_right);
   Node by_left, by_right;
   partial_derivatives(graph, node, &by_left, &by_right);
-  Node along = multiply(graph, by_left, along_left);
+  Node along = guarded_product(graph, along_left, by_left);
   if (operation_arity(vertex.operation) == 1) return along;
   along_right = vertex.operation == POWER ? along_exponent(graph, node, by_right, along_right)
-                                          : multiply(graph, by_right, along_right);
+                                          : guarded_product(graph, along_right, by_right);
   return add(graph, along, along_right);
 }
 

@@ -105,24 +105,29 @@ bool evaluate_derivatives(struct Instance *instance, const struct Point *point, 
   return are_finite(derivative, lagrangian.state_count);
 }
 
-/* Moves a point without a value back to the end of its piece: importers try such points. False if there is none. */
-static bool return_to_domain(struct Instance *instance, struct Point *point) {
-  bool tries = instance->kind == KIND_MODEL_EXCHANGE && !is_before_start(instance);
-  return tries && lagrangian.event_laws != NULL && lagrangian.event_laws->return_to_domain(instance, point);
+/* Changes to the pieces at a point without a value. False if there are no others, or before the start. */
+static bool change_pieces(struct Instance *instance, const struct Point *point) {
+  return lagrangian.event_laws != NULL && !is_before_start(instance) &&
+         lagrangian.event_laws->change_pieces(instance, point);
+}
+
+bool evaluate_derivatives_beyond(struct Instance *instance, const struct Point *point, double *derivative) {
+  if (evaluate_derivatives(instance, point, derivative)) return true;
+  if (!change_pieces(instance, point)) return false;
+  bool exists = evaluate_derivatives(instance, point, derivative);
+  lagrangian.event_laws->return_pieces(instance);
+  return exists;
 }
 
 enum Status evaluate_fmu_state(struct Instance *instance, double *derivative) {
   enum Status status = evaluate_prepare(instance);
   if (status != STATUS_DONE) return status;
   struct Point point = evaluate_point(instance);
-  if (evaluate_derivatives(instance, &point, derivative)) {
-    size_t n = lagrangian.coordinate_count;
-    /* The coordinates change by the importer's own velocities. */
-    if (point.state != instance->state) memcpy(derivative, instance->state + n, n * sizeof *derivative);
-    return STATUS_DONE;
-  }
-  if (return_to_domain(instance, &point) && evaluate_derivatives(instance, &point, derivative)) return STATUS_DONE;
-  return discard_for_singularity(instance);
+  if (!evaluate_derivatives_beyond(instance, &point, derivative)) return discard_for_singularity(instance);
+  size_t n = lagrangian.coordinate_count;
+  /* The coordinates change by the importer's own velocities. */
+  if (point.state != instance->state) memcpy(derivative, instance->state + n, n * sizeof *derivative);
+  return STATUS_DONE;
 }
 
 const double *evaluate_accelerations(struct Instance *instance, const struct Point *point, const double *derivative) {
@@ -157,8 +162,10 @@ static enum Status evaluate_result(struct Instance *instance, const struct Scala
   bool feels_forces = lagrangian.results.uses_acceleration[variable->index];
   struct Point point = feels_forces ? evaluate_point(instance) : instance_point(instance);
   bool has_value = evaluate_result_at(instance, &point, variable->index, value);
-  if (!(has_value && isfinite(*value)) && return_to_domain(instance, &point))
+  if (!(has_value && isfinite(*value)) && change_pieces(instance, &point)) {
     has_value = evaluate_result_at(instance, &point, variable->index, value);
+    lagrangian.event_laws->return_pieces(instance);
+  }
   return has_value ? STATUS_DONE : discard_for_singularity(instance);
 }
 

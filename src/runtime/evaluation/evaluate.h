@@ -52,8 +52,14 @@ struct Point evaluate_point(struct Instance *instance);
 bool evaluate_derivatives(struct Instance *instance, const struct Point *point, double *derivative);
 
 /*
- * Does the same at the instance's state, and updates parameter constants. Discards, after logging why, if there is no
- * derivative.
+ * Does the same at a point that a method or an importer tries, and that may lie beyond the end of a piece. Where the
+ * piece has no value, as sqrt(max(0, h)) for h < 0, the derivative is by the piece there.
+ */
+bool evaluate_derivatives_beyond(struct Instance *instance, const struct Point *point, double *derivative);
+
+/*
+ * Computes the derivative at the instance's state, and updates parameter constants. Discards, after logging why, if
+ * there is no derivative.
  */
 enum Status evaluate_fmu_state(struct Instance *instance, double *derivative);
 

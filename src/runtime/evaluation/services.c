@@ -41,6 +41,12 @@ bool solver_derivatives(struct Instance *instance, double time, const double *st
   return evaluate_derivatives(instance, &point, derivative);
 }
 
+bool solver_derivatives_beyond(struct Instance *instance, double time, const double *state, double *derivative) {
+  struct Point point = solver_point(instance, time, state);
+  instance->fmu_state->statistics[STATISTIC_DERIVATIVES]++;
+  return evaluate_derivatives_beyond(instance, &point, derivative);
+}
+
 /* Computes the Jacobian by columns from directional derivatives. Its workspace follows the inputs in instance->work. */
 static int jacobian_by_directions(struct Instance *instance, const struct Point *point, double *values) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;

@@ -7,6 +7,9 @@
 /* Computes d state / dt at a time and state, with the inputs of that time; counts it. False if it does not exist. */
 bool solver_derivatives(struct Instance *instance, double time, const double *state, double *derivative);
 
+/* Does the same for a state that a method tries: beyond the end of a piece without a value there, by the other piece. */
+bool solver_derivatives_beyond(struct Instance *instance, double time, const double *state, double *derivative);
+
 /* Computes the Jacobian, in the order of lagrangian.implicit.pattern; counts it. False if M is singular. */
 bool solver_jacobian(struct Instance *instance, double time, const double *state, double *values);
 

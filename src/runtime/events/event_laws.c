@@ -52,6 +52,7 @@ const struct EventLaws event_laws = {.work_count = resolution_work_count,
                                      .explain_ball = explain_ball,
                                      .holds_at_times = holds_at_times,
                                      .check = events_check,
-                                     .return_to_domain = exchange_return_to_domain,
+                                     .change_pieces = exchange_change_pieces,
+                                     .return_pieces = exchange_return_pieces,
                                      .indicators = exchange_indicators,
                                      .is_due = exchange_is_due};

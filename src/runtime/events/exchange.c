@@ -10,58 +10,56 @@
 #include "events/resolution.h"
 #include "instance/projection.h"
 
-/* Steps of Newton's method to the end of a piece, or to a zero. */
+/* Steps of Newton's method to a zero. */
 enum { APPROACH_LIMIT = 20 };
 
 /* Expressions of events that an importer may pass in one step. */
 enum { LATE_LIMIT = 8 };
 
-/* Relative excess of the step back to a zero, so that rounding does not leave the state beyond it. */
-static const double surplus = 64.0 * DBL_EPSILON;
-
-/* Returns the longest time in s since the motion left the range of a piece; 0 if it has left none, NAN if unknown. */
-static double time_beyond(const struct Resolution *resolution) {
+/* Sets each branch to the piece that its indicator calls for at a point. True if a piece changed. */
+static bool set_pieces(struct Resolution *resolution, const struct Point *point) {
   const struct SwitchTable *switches = resolution->switches;
-  double time = 0.0;
+  double *indicator = resolution->rounding;
+  bool changes = false;
+  if (!indicators_at(resolution->instance, point->time, point->state, indicator)) return false;
   for (size_t i = 0; i < switches->branch_count; i++) {
-    double sign = mode_of(resolution, switches->branches[i].mode),
-           rate = resolution->value[branch_rate_slot(switches, i)];
-    if (!(sign * resolution->value[i] < 0.0)) continue;
-    if (!(sign * rate < 0.0)) return NAN;
-    time = fmax(time, resolution->value[i] / rate);
+    const struct BranchMetadata *branch = &switches->branches[i];
+    double sign = indicator[i] > 0.0 ? 1.0 : -1.0;
+    bool has_sign = fabs(indicator[i]) > 0.0 && !branch->is_last_sign;
+    if (!has_sign || sign == mode_of(resolution, branch->mode)) continue;
+    resolution_set_observing_mode(resolution, branch->mode, sign);
+    changes = true;
   }
-  return time;
+  return changes && evaluate_prepare(resolution->instance) == STATUS_DONE;
 }
 
-bool exchange_return_to_domain(struct Instance *instance, struct Point *point) {
+/* An indicator may exist only after other pieces have changed, hence the rounds. */
+bool exchange_change_pieces(struct Instance *instance, const struct Point *point) {
   struct Resolution resolution = resolution_of(instance);
-  size_t n = lagrangian.coordinate_count;
-  double *state = resolution.rounded;
-  memcpy(state, point->state, lagrangian.state_count * sizeof *state);
-  point->state = state;
-  /* Accelerations do not exist here; pieces that end at positions and times need none. */
-  memset(resolution.acceleration, 0, (n + lagrangian.constraints.count) * sizeof *resolution.acceleration);
-  for (int i = 0; i < APPROACH_LIMIT; i++) {
-    resolution.switches->switching_values(point, resolution.acceleration, resolution.value);
-    double back = time_beyond(&resolution);
-    if (!(back > 0.0)) return i > 0 && back == 0.0;
-    back += surplus * fmax(back, fabs(point->time));
-    for (size_t k = 0; k < n; k++) state[k] -= back * state[n + k];
-    point->time -= back;
-  }
-  return false;
+  bool changes = false;
+  resolution_keep_modes(&resolution);
+  for (size_t round = 0; round < resolution.switches->branch_count && set_pieces(&resolution, point); round++)
+    changes = true;
+  return changes;
 }
 
-/* Gives indicators without a value beyond the end of a piece their values at its end. */
+void exchange_return_pieces(struct Instance *instance) {
+  struct Resolution resolution = resolution_of(instance);
+  resolution_restore_modes(&resolution);
+  evaluate_prepare(instance);
+}
+
+/* Gives indicators without a value beyond the end of a piece their values by the piece there. */
 static void complete_indicators(struct Instance *instance, double *value) {
   size_t count = indicator_count(lagrangian.switches);
   double *completed = instance->switching_work + count; /* values may be stored before it */
   struct Point point = instance_point(instance);
   bool has_gaps = false;
   for (size_t i = 0; i < count; i++) has_gaps |= isnan(value[i]);
-  if (!has_gaps || !exchange_return_to_domain(instance, &point)) return;
-  if (!indicators_at(instance, point.time, point.state, completed)) return;
-  for (size_t i = 0; i < count; i++)
+  if (!has_gaps || !exchange_change_pieces(instance, &point)) return;
+  bool are_known = indicators_at(instance, point.time, point.state, completed);
+  exchange_return_pieces(instance);
+  for (size_t i = 0; i < count && are_known; i++)
     if (isnan(value[i])) value[i] = completed[i];
 }
 

@@ -72,7 +72,10 @@ static enum Status read_along(struct Instance *instance, const struct Point *poi
     const struct ScalarVariable *variable = &lagrangian.variables[reference[i]];
     double derivative = evaluate_along(variable, point, &direction->seed, direction->derivative_along,
                                        direction->acceleration, direction->acceleration_along);
-    if (!isfinite(derivative)) return discard_call(instance, "the derivative of '%s' is not finite", variable->name);
+    if (!isfinite(derivative))
+      return discard_call(
+          instance, "the derivative of '%s' is not finite, as that of sqrt(x) at x = 0; expected a state beside it",
+          variable->name);
     value[i] = derivative;
   }
   return STATUS_DONE;

@@ -75,10 +75,11 @@ struct EventLaws {
   /* True if the constraint belongs to a contact or friction, which closes and opens at events. */
   bool (*holds_at_times)(const char *constraint);
   /*
-   * Moves a point outside a function's domain back to the end of its piece, along the velocities. An importer may try
-   * such points. The state of the point is then in workspace. False if there is no such piece, or it does not help.
+   * Sets the modes of pieces by the signs at a point beyond the end of a piece, where that piece may have no value: the
+   * methods and importers try such points. False if no piece changes. After true, return_pieces() restores the modes.
    */
-  bool (*return_to_domain)(struct Instance *instance, struct Point *point);
+  bool (*change_pieces)(struct Instance *instance, const struct Point *point);
+  void (*return_pieces)(struct Instance *instance);
   /* Evaluates the indicators as reported to an importer. False if the accelerations do not exist. */
   bool (*indicators)(struct Instance *instance, double *value);
   /* True if an indicator has a sign that its mode does not allow. */

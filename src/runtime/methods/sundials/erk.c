@@ -92,7 +92,7 @@ static bool obeys_equations(struct Instance *instance, const struct Erk *erk, do
     double slot = before + (k + 0.5) / SAMPLES * (time - before);
     N_Vector inside = erk->sundials.inside;
     if (ERKStepGetDky(erk->arkode, slot, 0, inside) < 0 || ERKStepGetDky(erk->arkode, slot, 1, erk->rate) < 0 ||
-        !solver_derivatives(instance, slot, N_VGetArrayPointer(inside), derivative))
+        !solver_derivatives_beyond(instance, slot, N_VGetArrayPointer(inside), derivative))
       return false;
     for (size_t i = 0; i < lagrangian.state_count; i++)
       if (differ(&erk->sundials, i, time - before, derivative[i], N_VGetArrayPointer(erk->rate)[i])) return false;

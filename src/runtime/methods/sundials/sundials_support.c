@@ -32,7 +32,7 @@ void sundials_load(const struct Instance *instance, const double *state, double 
 }
 
 int sundials_right_side(realtype time, N_Vector state, N_Vector derivative, void *instance) {
-  bool exists = solver_derivatives(instance, time, N_VGetArrayPointer(state), N_VGetArrayPointer(derivative));
+  bool exists = solver_derivatives_beyond(instance, time, N_VGetArrayPointer(state), N_VGetArrayPointer(derivative));
   return exists ? 0 : 1; /* recoverable: a shorter step may avoid the point */
 }
 
