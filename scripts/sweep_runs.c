@@ -24,6 +24,10 @@ struct Functions {
                       fmi2Boolean has_stop, fmi2Real stop);
   fmi2Status (*set)(fmi2Component component, const fmi2ValueReference references[], size_t count,
                     const fmi2Real values[]);
+  fmi2Status (*set_integer)(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                            const fmi2Integer values[]);
+  fmi2Status (*set_boolean)(fmi2Component component, const fmi2ValueReference references[], size_t count,
+                            const fmi2Boolean values[]);
   fmi2Status (*enter)(fmi2Component component);
   fmi2Status (*exit)(fmi2Component component);
   fmi2Status (*step)(fmi2Component component, fmi2Real time, fmi2Real size, fmi2Boolean is_final);
@@ -62,9 +66,10 @@ struct Record {
 
 /* The task. Arrays of values have a row for each run. */
 struct Sweep {
-  struct Variables varied, watched, ends, sampled;
-  const double *values; /* values of the varied variables: runs x varied */
-  double tolerance;     /* 0: the FMU's own */
+  struct Variables varied, integers, booleans, watched, ends, sampled; /* varied: those of type Real */
+  const double *values;                                                /* of the varied variables: runs x varied */
+  const int *integer_values, *boolean_values;                          /* likewise */
+  double tolerance;                                                    /* 0: the FMU's own */
   size_t time_count;
   const double *times;      /* ends of the communication steps in s, ascending */
   struct Variables counter; /* the counter of events; none if their times are not needed */
@@ -243,14 +248,28 @@ static void begin_records(const struct Sweep *sweep, double *recorded) {
   }
 }
 
+/* Sets the varied variables of run k. Returns NULL, or the name of the function that failed. */
+static const char *set_varied(const struct Functions *f, fmi2Component component, const struct Sweep *sweep, size_t k) {
+  const struct Variables *varied = &sweep->varied, *integers = &sweep->integers, *booleans = &sweep->booleans;
+  const int *integer_values = sweep->integer_values + k * integers->count;
+  const int *boolean_values = sweep->boolean_values + k * booleans->count;
+  if (f->set(component, varied->references, varied->count, sweep->values + k * varied->count) > fmi2Warning)
+    return "fmi2SetReal";
+  if (f->set_integer(component, integers->references, integers->count, integer_values) > fmi2Warning)
+    return "fmi2SetInteger";
+  if (f->set_boolean(component, booleans->references, booleans->count, boolean_values) > fmi2Warning)
+    return "fmi2SetBoolean";
+  return NULL;
+}
+
 /* Does run k. Returns NULL, or the name of the function that failed. */
 static const char *run(const struct Functions *f, fmi2Component component, const struct Sweep *sweep, size_t k) {
-  const struct Variables *varied = &sweep->varied, *watched = &sweep->watched, *ends = &sweep->ends;
+  const struct Variables *watched = &sweep->watched, *ends = &sweep->ends;
   if (f->reset(component) > fmi2Warning) return "fmi2Reset";
   if (f->setup(component, sweep->tolerance > 0, sweep->tolerance, 0, fmi2False, 0) > fmi2Warning)
     return "fmi2SetupExperiment";
-  if (f->set(component, varied->references, varied->count, sweep->values + k * varied->count) > fmi2Warning)
-    return "fmi2SetReal";
+  const char *problem = set_varied(f, component, sweep, k);
+  if (problem != NULL) return problem;
   if (f->enter(component) > fmi2Warning) return "fmi2EnterInitializationMode";
   if (f->exit(component) > fmi2Warning) return "fmi2ExitInitializationMode";
   if (f->get(component, watched->references, watched->count, sweep->before + k * watched->count) > fmi2Warning)

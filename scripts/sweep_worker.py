@@ -22,6 +22,7 @@ from fmpy.fmi2 import (
 )
 
 PROBLEMS = ("logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal")  # log categories of warnings and errors
+VARIED = {"Real": float, "Integer": np.intc, "Boolean": np.intc}  # types of variables that a sweep varies, and of their values in C
 opened = {}  # Instance by (thread, hash of the FMU's archive)
 
 
@@ -47,12 +48,16 @@ class Instance:
         self.callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
         self.callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
         self.slave.instantiate(callbacks=self.callbacks)
-        called = ("Reset", "SetupExperiment", "SetReal", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetReal", "GetInteger", "GetFMUstate", "SetFMUstate", "FreeFMUstate")
+        called = ("Reset", "SetupExperiment", "SetReal", "SetInteger", "SetBoolean", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetReal", "GetInteger", "GetFMUstate", "SetFMUstate", "FreeFMUstate")
         self.functions = (c_void_p * len(called))(*(cast(getattr(self.slave.dll, f"fmi2{name}"), c_void_p) for name in called))
 
     def references(self, names):
         known = {variable.name: variable.valueReference for variable in self.description.modelVariables}
         return np.array([known[name] for name in names], dtype=np.uintc)
+
+    def types_of(self, names):
+        known = {variable.name: variable.type for variable in self.description.modelVariables}
+        return [known[name] for name in names]
 
     def counts_events(self):
         return any(variable.name == "events" and variable.type == "Integer" for variable in self.description.modelVariables)
@@ -87,8 +92,8 @@ class Sweep(Structure):
     """struct Sweep of sweep_runs.c."""
 
     _fields_ = [
-        *(field for name in ("varied", "watched", "ends", "sampled") for field in variables_fields(name)),
-        ("values", c_void_p), ("tolerance", c_double), ("time_count", c_size_t), ("times", c_void_p), *variables_fields("counter"),
+        *(field for name in ("varied", "integers", "booleans", "watched", "ends", "sampled") for field in variables_fields(name)),
+        *((name, c_void_p) for name in ("values", "integer_values", "boolean_values")), ("tolerance", c_double), ("time_count", c_size_t), ("times", c_void_p), *variables_fields("counter"),
         ("record_count", c_size_t), *((name, c_void_p) for name in ("records", "recorded", "samples", "before", "after", "end_values", "seconds")),
     ]  # fmt: skip
 
@@ -139,15 +144,18 @@ def sampled_of(settings):
 def run_by_fmi(instance, rows, names, settings):
     """Perform the runs one after another, by the functions of FMI; return their Results."""
     states, watched, sampled, records = states_of(instance.description), conserved_energies(instance.description), sampled_of(settings), settings["records"]
-    variables, count = [instance.references(of) for of in (names, watched, states, sampled)], len(rows)
+    types, count = instance.types_of(names), len(rows)
+    varied = [[name for name, kind in zip(names, types) if kind == one] for one in VARIED]
+    values = [np.ascontiguousarray(rows[:, [kind == one for kind in types]], dtype=number) for one, number in VARIED.items()]
+    variables = [instance.references(of) for of in (*varied, watched, states, sampled)]
     counter = instance.references(["events"] if any(VALUE < kind < EVENTS_OF for _, kind, _, _ in records) and instance.counts_events() else [])
     names_events = any(kind >= EVENTS_OF for _, kind, _, _ in records)
     instance.slave.setDebugLogging(names_events, ["logEvents", *PROBLEMS] if names_events else [])
     before, after = (np.full((count, len(watched)), np.nan) for _ in range(2))
-    ends, seconds, rows = np.full((count, len(states)), np.nan), np.zeros(count), np.ascontiguousarray(rows, dtype=float)
+    ends, seconds = np.full((count, len(states)), np.nan), np.zeros(count)
     recorded, samples, times = np.full((count, len(records)), np.nan), np.zeros((3, len(sampled))), np.array(settings["times"], dtype=float)
     wanted = (Record * len(records))(*((kind, sampled.index(name) if name in sampled else 0, time, name and name.encode()) for _, kind, name, time in records))
-    sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), rows.ctypes.data, settings["tolerance"] or 0.0, len(times), times.ctypes.data,
+    sweep = Sweep(*(word for references in variables for word in (len(references), references.ctypes.data)), *(part.ctypes.data for part in values), settings["tolerance"] or 0.0, len(times), times.ctypes.data,
                   len(counter), counter.ctypes.data, len(records), addressof(wanted), *(a.ctypes.data for a in (recorded, samples, before, after, ends, seconds)))  # fmt: skip
     problems = np.array(instance.run(sweep, count), dtype=object)
     recorded[problems != None] = np.nan  # noqa: E711: elementwise comparison

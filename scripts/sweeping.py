@@ -25,10 +25,10 @@ from . import sweep_worker
 from .ensembles import Ensemble, lanes_here, source_of
 from .problem import Problem
 from .progress import Progress
-from .quantities import number_of
+from .quantities import number_of, truth_of
 from .simulation import described
 from .sweep_records import VALUE, check_log, records_of, times_of
-from .variables import settable, units_of, unsettable_reason, whole_kind
+from .variables import startable, unsettable_reason, whole_kind
 from .whole_files import replace
 
 try:
@@ -45,30 +45,44 @@ IN_FLIGHT = 3  # tasks in flight for each thread of a cluster, to hide latency
 
 def known_name(name, description):
     """Return the variable that a name varies: theta for theta, and for theta0, the start value of theta. Raise Problem if there is none."""
-    names = settable(description)
+    names = startable(description)
     if name in names:
         return name
     if name.endswith("0") and name[:-1] in names:
         return name[:-1]
-    what = "does not vary in a sweep of" if whole_kind(name, description) else "has no start value in"
-    raise Problem(f"'{name}' {what} {description.modelName}{unsettable_reason(name, description)}; {'these do' if whole_kind(name, description) else 'these have one'}: {', '.join(names)}")
+    raise Problem(f"'{name}' has no start value in {description.modelName}{unsettable_reason(name, description)}; these have one: {', '.join(names)}")
 
 
-def in_unit(name, values, unit):
-    """Return a range or values of sweep_arguments.py, which may be texts, as numbers in the unit."""
-    if isinstance(values, tuple):
-        return (*(number_of(name, end, unit) for end in values[:2]), values[2])
-    return [number_of(name, value, unit) for value in values]
+def check_whole(name, values, description):
+    """Raise Problem for the first value that the type of the variable does not have."""
+    kind = whole_kind(name, description)
+    for value in values if kind else ():
+        if kind == "a Boolean" and value not in (0, 1):
+            raise Problem(f"'{name}' is {kind}, and {value:g} is none; expected {name}=0,1")
+        if value % 1 != 0:
+            raise Problem(f"'{name}' is {kind}, and {value:g} is none; expected whole numbers, such as {name}=1:5:5")
 
 
-def points(variations, random, seed):
-    """Return the varied values, runs x variables: the grid, or `random` samples with this seed."""
+def in_unit(variable, values):
+    """Return a range or values of sweep_arguments.py, which may be texts, as numbers in the variable's unit."""
+    ends = [number_of(variable.name, truth_of(variable, value), variable.unit or "1") for value in (values[:2] if isinstance(values, tuple) else values)]
+    return (*ends, values[2]) if isinstance(values, tuple) else ends
+
+
+def sample_of(values, count, generator, is_whole):
+    """Return `count` random samples of a range or of values."""
+    if not isinstance(values, tuple):
+        return generator.choice(values, count)
+    if is_whole:
+        return generator.integers(math.ceil(values[0]), math.floor(values[1]), count, endpoint=True)
+    return generator.uniform(*values[:2], count)
+
+
+def points(variations, random, seed, whole):
+    """Return the varied values, runs x variables: the grid, or `random` samples with this seed. Samples of the names `whole` are whole numbers."""
     if random:
-        generator, columns = np.random.default_rng(seed), []
-        for _, values in variations:
-            spread = generator.uniform(*values[:2], random) if isinstance(values, tuple) else generator.choice(values, random)
-            columns.append(spread)
-        return np.array(columns).T
+        generator = np.random.default_rng(seed)
+        return np.array([sample_of(values, random, generator, name in whole) for name, values in variations], dtype=float).T
     axes = []
     for name, values in variations:
         if isinstance(values, tuple) and values[2] is None:
@@ -309,8 +323,10 @@ def sweep(path, folder, words, runner, compile_ensemble):
     names = [known_name(name, description) for name, _ in words.vary]
     if len(set(names)) < len(names):
         raise Problem("a variable varies twice; expected it once")
-    units = units_of(description)
-    rows = points([(name, in_unit(name, values, units[name])) for name, (_, values) in zip(names, words.vary)], words.random, words.seed)
+    variables, whole = {variable.name: variable for variable in description.modelVariables}, [name for name in names if whole_kind(name, description)]
+    rows = points([(name, in_unit(variables[name], values)) for name, (_, values) in zip(names, words.vary)], words.random, words.seed, whole)
+    for name, values in zip(names, rows.T):
+        check_whole(name, np.unique(values), description)
     experiment = description.defaultExperiment
     stop = words.stop_time or float(experiment.stopTime if experiment and experiment.stopTime else 1.0)
     records = records_of(words.record, description, stop)
@@ -320,7 +336,7 @@ def sweep(path, folder, words, runner, compile_ensemble):
     archive = Path(path).read_bytes()
     ensemble = None
     at_times = all(kind == VALUE for _, kind, *_ in records)  # lanes record no extremes and no events
-    if len(rows) >= LANES_FROM and at_times and not words.scheduler:  # the workers of a cluster may have other processors
+    if len(rows) >= LANES_FROM and at_times and not whole and not words.scheduler:  # lanes vary numbers only; the workers of a cluster may have other processors
         ensemble = ensemble_of(path, description, names, settings, runner, compile_ensemble)
     plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), "lanes": ensemble is not None, **settings}
     try:

@@ -54,7 +54,7 @@ def built():
         ("sensitivities", [["x", "x"], ["k"], [0, 1]], {}, "'x' is given twice in of"),
         ("gradient", ["x", [], 1], {}, "by is empty"),
         ("gradient", ["x", ["k"], math.nan], {}, "stop_time is nan"),
-        ("sweep", [{"n": (1, 3, 3)}], {}, "'n' does not vary in a sweep of SwitchedSpring, as it is an Integer; these do: x, v, u, k"),
+        ("sweep", [{"n": (1, 2, 3)}], {}, "'n' is an Integer, and 1.5 is none; expected whole numbers, such as n=1:5:5"),
         ("sweep", [{"k": [1, 2]}], {"stop_time": math.nan}, "stop_time is nan"),
         ("sweep", [{"k": [1, 2]}], {"tolerance": 0}, "the tolerance is 0"),
     ],

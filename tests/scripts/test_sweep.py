@@ -1,5 +1,6 @@
 """Sweeps: all runs once, in order and correct; failures recorded; resumed after a kill."""
 
+import itertools
 import re
 import signal
 import subprocess
@@ -12,7 +13,7 @@ import numpy as np
 import pyarrow.parquet as pq
 import pytest
 
-from fmu import ROOT, archive
+from fmu import ROOT, archive, build_systems
 
 pytestmark = pytest.mark.release
 
@@ -39,6 +40,27 @@ def test_grid(tmp_path):
         assert table["theta_end"][run] == pytest.approx(result["theta"][-1], abs=1e-12)
     assert np.max(np.abs(table["energyError"])) < 1e-10 and min(table["runTime"]) > 0
     assert set(table["problem"]) == {None}
+
+
+PULLS = """<system name="Pulls"><parameter name="n" type="Integer" start="1" min="0"/><parameter name="on" type="Boolean" start="true"/><parameter name="F" start="1"/>
+  <parameter name="seed" type="Integer" start="0"/><coordinate name="x" velocity="v"/><particle mass="2" x="x"/><force coordinate="x">if(on, n*F, 0)</force>
+  <state name="z" rate="gauss(seed, 1)"/></system>"""
+
+
+def test_integers_and_booleans_vary(tmp_path):
+    """x = on n F t^2/4 at 2 s; z is that of the FMU with this seed."""
+    build_systems("pulls", {"Pulls": PULLS})
+    table, _ = sweep(tmp_path / "pulls.parquet", str(archive("Pulls")), "--vary", "n=1:3:3", "--vary", "on=true,false", "--vary", "F=0.5,2", "--vary", "seed=7,8", "--stop", "2")
+    assert [tuple(table[name][run] for name in ("n", "on", "F", "seed")) for run in range(24)] == [*itertools.product((1, 2, 3), (1, 0), (0.5, 2), (7, 8))]
+    np.testing.assert_allclose(table["x_end"], np.array(table["on"]) * table["n"] * table["F"], rtol=1e-12)
+    for seed in (7, 8):
+        result = fmpy.simulate_fmu(str(archive("Pulls")), start_values={"seed": seed}, stop_time=2, output_interval=2, output=["z"])
+        assert {z for z, one in zip(table["z_end"], table["seed"]) if one == seed} == {result["z"][-1]}
+    table, _ = sweep(tmp_path / "random.parquet", str(archive("Pulls")), "--vary", "n=1:4", "--random", "60", "--stop", "2")
+    assert {*table["n"]} == {1, 2, 3, 4}
+    for words, message in ((["n=1:2:3"], "'n' is an Integer, and 1.5 is none; expected whole numbers, such as n=1:5:5"), (["on=2"], "'on' is a Boolean, and 2 is none; expected on=0,1")):
+        result = subprocess.run(command(tmp_path / "bad.parquet", str(archive("Pulls")), "--vary", *words), capture_output=True, text=True)
+        assert result.returncode == 1 and message in result.stderr
 
 
 def test_failures_are_recorded(tmp_path):
