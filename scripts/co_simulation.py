@@ -163,7 +163,7 @@ class Slave2(Slave):
                 low, high = self.narrowed(state, count, begin, end)
                 time = high if low > begin else begin
                 self.go(state, begin, low)
-                record(time)
+                record(time, is_before=True)
                 self.go(state, begin, high)
                 record(time)
                 begin, count, state = high, self.events(), self.saved(2)
@@ -277,19 +277,19 @@ class Slave3(Slave):
                 raise Problem(f"{self.description.modelName} does not advance from {time:.9g} s")
             time = last if is_early else end
             if is_event:
-                self.show(time, inputs, record)
+                self.show(time, inputs, record, is_before=True)
                 self.fmu.enterEventMode()
                 self.update()
                 self.show(time, inputs, record)
                 if constant is not None:
                     self.set(constant)
 
-    def show(self, time, inputs, record):
-        """Add a row with the true inputs of that time."""
+    def show(self, time, inputs, record, is_before=False):
+        """Add a row with the true inputs of that time, before or after an event."""
         if record and inputs(time) is not None:
             self.set(inputs(time))
         if record:
-            record(time)
+            record(time, is_before)
 
     def free(self):
         pass
@@ -320,17 +320,21 @@ def _steps(signals, start, stop, interval):
 
 def _run(slave, recorder, steps, record_events, feedback=None):
     """Take the steps, (begin, end, polynomials of the inputs, is_point), with rows at communication points and at events; apply the feedback after each."""
-    record = (lambda time: recorder.sample(time, force=True)) if record_events else None
-    before = None
+
+    def add_row(time, is_before=False):
+        if not (is_before and recorder.lastSampleTime == time):  # a communication point at an event has the row before it
+            recorder.sample(time, force=True)
+
+    record, before = add_row if record_events else None, None
     for time, end, piece, is_point in steps:
         if before is not None and _jumps(before, piece, end - time):
-            if record and recorder.lastSampleTime != time:
-                record(time)
+            if record:
+                record(time, is_before=True)
             slave.change(lambda: slave.set(piece[0]))  # noqa: B023 - called at once
             if record:
                 record(time)
         slave.step(time, end, piece, record)
-        if is_point:
+        if is_point and recorder.lastSampleTime != end:  # an event at this point has added rows
             recorder.sample(end, force=True)
         if feedback:
             feedback.apply(end)

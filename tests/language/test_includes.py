@@ -205,7 +205,7 @@ INCLUDED = " (included as 'part' on line 3 of system.xml)"
 
 @pytest.mark.parametrize("inside, message", [
     ("<coordinate name='x' velocity='v'/>\n<particle mass='secret' x='x'/>",
-     "parts/part.xml:3: mass of <particle>: unknown name 'secret'; expected a parameter, coordinate, velocity, input, definition or time" + INCLUDED),
+     "parts/part.xml:3: mass of <particle>: unknown name 'secret'; expected a parameter, coordinate, velocity, state, mode, input, definition or time" + INCLUDED),
     ("<coordinate name='mass' velocity='v'/>\n<particle mass='1' x='maas'/>", "parts/part.xml:3: x of <particle>: unknown name 'maas'; did you mean 'mass'?" + INCLUDED),
     ("<parameter name='sin' start='1'/>", "parts/part.xml:2: the name 'sin' belongs to the language itself; expected another name" + INCLUDED),
     ("<particle name='a' mass='1' x='1'/>\n<particle name='a' mass='1' x='1'/>", "a particle or body named 'part.a' is already defined on line 2"),

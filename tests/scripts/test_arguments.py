@@ -51,6 +51,7 @@ def built():
         ("linearize", [{"on": 0}], {}, "'on' of SwitchedSpring cannot be set, as it is a Boolean"),
         ("sensitivities", [[], ["k"], [0, 1]], {}, "of is empty; expected one name at least"),
         ("sensitivities", [["x"], [], [0, 1]], {}, "by is empty"),
+        ("sensitivities", [["x"], ["k"], []], {}, "times is empty; expected one time at least, in s"),
         ("sensitivities", [["x", "x"], ["k"], [0, 1]], {}, "'x' is given twice in of"),
         ("gradient", ["x", [], 1], {}, "by is empty"),
         ("gradient", ["x", ["k"], math.nan], {}, "stop_time is nan"),

@@ -1,6 +1,7 @@
 """Equilibria against closed forms, and the report on their linearization."""
 
 import math
+import warnings
 
 import numpy as np
 import pytest
@@ -114,6 +115,17 @@ def test_a_hydraulic_cylinder(lagrange_fmu):  # noqa: F811
     assert found.stability == "stable"
     valve = lagrange_fmu.equilibrium(fmu.archive("Piston"), {}, hold={"x": "2cm"}, vary=["u"])
     assert valve.point["u"] == pytest.approx(1e-11 * 4e6 / (1e-7 * math.sqrt(1.6e7)), rel=1e-12)
+
+
+def test_too_many_values_that_vary(lagrange_fmu):  # noqa: F811
+    """A held pressure needs C u sqrt(ps - p) = leak p, by u or by C, but does not determine both; k follows from x."""
+    with pytest.warns(UserWarning, match="equilibria near the guess exist for any u and C within limits"):
+        found = lagrange_fmu.equilibrium(fmu.archive("Piston"), {}, hold={"p": 4e6}, vary=["u", "C"])
+    assert found.point["u"] * found.point["C"] == pytest.approx(1e-11 * 4e6 / 4000, rel=1e-9)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = lagrange_fmu.equilibrium(fmu.archive("Piston"), {}, hold={"p": 4e6, "x": 0.02}, vary=["u", "k"])
+    assert found.point["k"] == pytest.approx(4e6 * 1e-3 / 0.02, rel=1e-9)
 
 
 def test_an_integrator(lagrange_fmu):  # noqa: F811

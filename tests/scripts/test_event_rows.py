@@ -26,6 +26,7 @@ CROWD = """<system name="Crowd"><for index="i" from="1" to="40"><coordinate name
 @pytest.fixture(scope="module", autouse=True)
 def built():
     build_systems("events", {"Switched": SWITCHED, "Crowd": CROWD}, versions=(2, 3))
+    build_systems("halved", {"Halved": SWITCHED.replace('"Switched"', '"Halved"').replace("0.35", "0.5")}, versions=(2, 3))
 
 
 @pytest.mark.parametrize("of", [fmu, fmi3])
@@ -58,6 +59,16 @@ def test_a_force_that_switches(of):
     assert len(motion) == 11 + 2
 
 
+@pytest.mark.parametrize("of", [fmu, fmi3])
+def test_an_event_at_a_communication_point(of):
+    """The force changes from 1 to -3 N at 0.5 s, where a step of 0.25 s ends: two rows, before and after; x = t^2/2 until then."""
+    motion = simulate(of.archive("Halved"), {}, stop_time=1.0, output_interval=0.25).outputs
+    at = np.abs(motion["time"] - 0.5) < 1e-9
+    np.testing.assert_allclose(motion["a"][at], [1, -3])
+    np.testing.assert_allclose(motion["x"][at], 0.125, rtol=1e-9)
+    assert len(motion["time"]) == 6
+
+
 def test_many_events_of_a_step():
     """Forty balls fall from different heights: FMI 3.0 reports all events, FMI 2.0 the first ones of a step; other values agree."""
     all_of = simulate(fmi3.archive("Crowd"), {})
@@ -72,7 +83,7 @@ def test_many_events_of_a_step():
 def test_the_command(tmp_path):
     folder = package.assemble(tmp_path / "package")
     words = ["run", fmu.archive("BouncingBall"), "h=1", "--stop-time", "0.6", "--step", "0.1", "--output", "v"]
-    for further, rows in (([], 9), (["--no-events"], 7)):
+    for further, rows in (([], 9), (["--no-events"], 7), (["--no-events", "v=0"], 7)):
         result = package.run(folder, *words, *further, cwd=tmp_path)
         assert result.returncode == 0, result.stderr
         assert len((tmp_path / "BouncingBall.csv").read_text().splitlines()) == 1 + rows

@@ -472,3 +472,13 @@ def test_a_sign_is_an_expression_that_passes_0(open_fmu):
     assert instance.get("down", "up") == [0.0, 0.0]
     instance.step(0.2)
     assert instance.get("down", "up") == [1.0, 0.0]
+
+
+def test_a_negative_offset(open_fmu):
+    """Of the times -0.25 s, 0.75 s, 1.75 s, ... those from the start time on count."""
+    fmu.build_systems("samples-early", {"EarlySample": """<system name="EarlySample"><state name="z" rate="1"/><mode name="n"/><mode name="at"/>
+  <sample every="1" offset="-0.25"><set mode="n">n + 1</set><set mode="at">z</set></sample></system>"""})
+    instance = open_fmu("EarlySample").initialize()
+    for time, count in ((0.7, 0), (0.8, 1), (1.7, 1), (1.8, 2)):
+        instance.step(time - instance.time)
+        assert instance.get("n", "at") == pytest.approx([count, [0, 0.75, 1.75][count]])

@@ -21,6 +21,8 @@ MODULES = {name: import_module(f".commands.{name}", __package__) for name in COM
 class Words(argparse.ArgumentParser):
     """An argument parser whose errors suggest the nearest known word."""
 
+    is_intermixed = False  # True while options are parsed apart from positional arguments
+
     def error(self, message):
         choice = re.fullmatch(r"(.*invalid choice: '?(.*?)'?) \(choose from (.*)\)", message)
         if choice:
@@ -35,6 +37,16 @@ class Words(argparse.ArgumentParser):
             if isinstance(action, argparse._SubParsersAction):
                 for command in [action.choices[name]] if name else action.choices.values():
                     yield from command.options(None)
+
+    def parse_known_args(self, args=None, namespace=None):
+        """Allow options between positional arguments, as in `run FILE --stop-time 1 l=2`, except before the name of a command."""
+        if self._subparsers is not None or self.is_intermixed:
+            return super().parse_known_args(args, namespace)
+        self.is_intermixed = True
+        try:
+            return self.parse_known_intermixed_args(args, namespace)
+        finally:
+            self.is_intermixed = False
 
     def parse_args(self, words=None):
         arguments, unknown = self.parse_known_args(words)

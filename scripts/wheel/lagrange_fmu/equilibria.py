@@ -10,6 +10,7 @@ ends when a step is negligible or after STEPS steps. Each step costs a Jacobian 
 linearization.py.
 """
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,6 +26,7 @@ STEPS, HALVINGS = 200, 25
 LARGEST = 0.5  # largest step, relative to a value or its nominal value
 SINGULAR = 1e-10  # singular values below this share of the largest one belong to directions without effect
 PRECEDENCE = 1e3  # weight of held values relative to rates, in the error that steps decrease
+FREE, TINY = 1e-6, 1e-300  # share of an undetermined direction from which on it moves a value; avoids divisions by 0
 BALANCED = 1e-9  # a rate below this share of the terms of its linearization counts as 0
 CONVERGED = 1e-13  # relative step that is negligible
 FURTHEST = 1e9  # values beyond this multiple of nominal values and the guess mean that forces only vanish at infinity
@@ -135,6 +137,17 @@ class _Search:
         step = directions / lengths @ part
         largest = np.max(np.abs(step) / np.maximum(self.size, np.abs(values)), initial=0.0)
         return step * min(1.0, LARGEST / largest) if largest else step
+
+    def undetermined(self, values):
+        """Return the names of varied values along which the residuals do not change, to first order."""
+        _, directions = self.linearize(values)
+        directions = directions / np.linalg.norm(directions / self.size[:, None], axis=0)
+        _, singular, right = np.linalg.svd(self.weight[:, None] * self.jacobian @ directions)
+        rank = np.count_nonzero(singular > SINGULAR * singular.max(initial=0.0))
+        scale = np.where(values == 0, self.size, np.abs(values))
+        moves = np.abs(directions @ right[rank:].T) / scale[:, None]
+        free = (moves / moves.max(axis=0, initial=TINY)).max(axis=1, initial=0.0)
+        return [name for name, share in zip(self.vary, free[len(self.point.states) :]) if share > FREE]
 
     def is_state(self):
         """Return a mask of the residuals that are a state themselves, such as der(x) = v."""
@@ -255,7 +268,9 @@ def equilibrium(system, guess, hold, vary):
         point.values |= {name: value for name, value in hold.items() if name not in point.outputs}
         search = _Search(point, sought, list(vary))
         values = search.run()
-        count = len(point.states)
+        count, free = len(point.states), search.undetermined(values) if vary else []
+        if free:
+            warnings.warn(f"equilibria near the guess exist for any {' and '.join(free)} within limits: these are the nearest; expected fewer values in vary, or more in hold", stacklevel=2)
         point.values |= dict(zip(point.states, values[:count])) | dict(zip(vary, values[count:]))
         linear, eigenvalues, stability = None, np.empty(0), "undecided"
         try:

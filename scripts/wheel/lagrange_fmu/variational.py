@@ -169,7 +169,9 @@ def sensitivities(system, of, by, times, start_values, tolerance):
         raise Problem(f"the times are {times}; expected numbers, in s") from None
     if times.ndim > 1:
         raise Problem(f"the times have the shape {times.shape}; expected a list of numbers, in s")
-    if not (times.size and np.isfinite(times).all() and times[0] >= 0 and (np.diff(times) > 0).all()):
+    if not times.size:
+        raise Problem("times is empty; expected one time at least, in s")
+    if not (np.isfinite(times).all() and times[0] >= 0 and (np.diff(times) > 0).all()):
         raise Problem(f"the times are {', '.join(f'{time:g}' for time in times)} s; expected one at least, from 0 s on, each later than the one before")
     with followed(system, dict(start_values), by) as point:
         check_names(point, of, by)

@@ -89,6 +89,7 @@ struct UnitReader {
 static const char *problem_of_name(const char *text) {
   if (*text == '\0' || strcmp(text, "-") == 0) return "expected 1 for a pure number, or no unit=\"...\"";
   if (*text == '[') return "expected it without brackets";
+  if (strncmp(text, "sqrt(", 5) == 0) return "expected a decimal exponent for a root, as in Pa0.5 for sqrt(Pa)";
   return "expected coherent SI units such as kg, m, s, rad, N, J, W, Hz, joined by '.' and '/', "
          "for example kg.m2/s2 or N/(m.s)";
 }

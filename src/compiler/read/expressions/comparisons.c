@@ -81,13 +81,17 @@ static Node both(struct Graph *graph, Node first, Node second) {
 /* Parses a comparison of two sums with equal units, or a single mode or Boolean parameter. */
 static Node parse_relation(struct Parser *parser) {
   struct Graph *graph = parser->graph;
+  const char *begin = parser->next + strspn(parser->next, " \t\r\n");
   struct Quantity left = parse_sum(parser);
   if (!parser->failed) reject_equality(parser);
   enum Comparison comparison = parser->failed ? NO_COMPARISON : parse_comparison(parser);
   if (parser->failed) return ZERO;
   if (comparison == NO_COMPARISON) {
     if (graph_is_constant_in_time(graph, left.node)) return left.node;
-    FAIL(parser, "%s: a condition is not a comparison; expected one such as x > 0", parser->location.what);
+    int length = (int)(parser->next - begin);
+    while (length > 0 && strchr(" \t\r\n", begin[length - 1]) != NULL) length--;
+    FAIL(parser, "%s: the condition '%.*s' is not a comparison; expected one such as %.*s > 0", parser->location.what,
+         length, begin, length, begin);
     return ZERO;
   }
   struct Quantity right = parse_sum(parser);

@@ -85,10 +85,11 @@ static struct Quantity parse_literal(struct Parser *parser) {
 }
 
 long parse_whole(struct Parser *parser, const char *what) {
-  unsigned kinds = parser->location.kinds;
+  const struct Location location = parser->location;
   parser->location.kinds = 0;
+  parser->location.what = format_text("%s: %s", location.what, what);
   struct Quantity value = parse_sum(parser);
-  parser->location.kinds = kinds;
+  parser->location = location;
   if (parser->failed) return 0;
   double number = graph_is_constant(parser->graph, value.node) ? graph_value(parser->graph, value.node) : NAN;
   if (number == floor(number) && fabs(number) < 1e9) return (long)number;

@@ -25,6 +25,15 @@ static double value_at_start(const struct Scope *scope, Node node) {
   return value;
 }
 
+/* Requires a pure number as the argument of floor, ceil or round. */
+static void require_countable(struct Parser *parser, struct Quantity value, const char *name) {
+  if (!scope_units_agree(parser->scope, value.dimension, dimension_one) && !value.literal)
+    FAIL(parser,
+         "%s: unit mismatch: the argument of %s has the unit %s, expected 1; divide it by a step of this unit, as in "
+         "step*%s(x/step)",
+         parser->location.what, name, unit_text(value.dimension), name);
+}
+
 static void require_dimensionless(struct Parser *parser, struct Quantity value, const char *what) {
   if (scope_units_agree(parser->scope, value.dimension, dimension_one)) return;
   char *problem = format_text("%s: unit mismatch: %s has the unit %s, expected 1 or rad", parser->location.what, what,
@@ -195,7 +204,7 @@ struct Quantity quantity_rounded(struct Parser *parser, const char *name, struct
     note_remainder(parser, result.node, b.node);
     return result;
   }
-  require_dimensionless(parser, a, format_text("the argument of %s", name));
+  require_countable(parser, a, name);
   bool is_ceiling = strcmp(name, "ceil") == 0, is_nearest = strcmp(name, "round") == 0;
   Node half = graph_constant(graph, 0.5), argument = is_ceiling ? negate(graph, a.node) : a.node;
   Node floor = floor_in_place(parser, is_nearest ? add(graph, argument, half) : argument);

@@ -16,7 +16,7 @@ static const char *expected_names(const struct Parser *parser) {
   if (parser->location.kinds == 1u << PARAMETER) return "a parameter or a constant";
   if (parser->scope->model == NULL) return "a number, perhaps with its unit, such as 0.5, pi/2 or 30deg";
   return parser->location.kinds == 0 ? "a number, or a constant that is defined above"
-                                     : "a parameter, coordinate, velocity, input, definition or time";
+                                     : "a parameter, coordinate, velocity, state, mode, input, definition or time";
 }
 
 static bool is_known(const struct Parser *parser, const char *name) {

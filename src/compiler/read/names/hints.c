@@ -194,6 +194,8 @@ const char *hint_for_function(const char *name) {
 
 const char *hint_for_kind(enum SymbolKind kind, unsigned allowed) {
   allowed &= ~(1u << MODE);
+  if (allowed == 0 && (kind == MODE || kind == PARAMETER))
+    return "; expected numbers and constants; choose by if(i > 1.5, c[2], c[1])";
   if (allowed == 0) return "; expected numbers and constants";
   if (allowed == (1u << PARAMETER | 1u << TIME | 1u << INPUT)) return "; expected inputs, parameters and time";
   if (allowed == 1u << PARAMETER) return "; expected numbers and parameters";
