@@ -179,7 +179,7 @@ class Slave2(Slave):
             middle = (low + high) / 2
             self.go(state, begin, middle)
             low, high = (middle, high) if self.events() == count else (low, middle)
-        return low, high
+        return (low if low - begin > enough else begin), high
 
     def go(self, state, begin, end):
         """Restore a state at `begin`, and step to `end`."""
@@ -322,7 +322,7 @@ def _run(slave, recorder, steps, record_events, feedback=None):
     """Take the steps, (begin, end, polynomials of the inputs, is_point), with rows at communication points and at events; apply the feedback after each."""
 
     def add_row(time, is_before=False):
-        if not (is_before and recorder.lastSampleTime == time):  # a communication point at an event has the row before it
+        if not (is_before and time - recorder.lastSampleTime <= 4 * np.spacing(abs(time))):  # a communication point at an event has the row before it
             recorder.sample(time, force=True)
 
     record, before = add_row if record_events else None, None

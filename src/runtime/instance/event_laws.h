@@ -75,8 +75,8 @@ struct EventLaws {
   /* True if the constraint belongs to a contact or friction, which closes and opens at events. */
   bool (*holds_at_times)(const char *constraint);
   /*
-   * Sets the modes of pieces by the signs at a point beyond the end of a piece, where that piece may have no value: the
-   * methods and importers try such points. False if no piece changes. After true, return_pieces() restores the modes.
+   * Sets the modes of pieces by the signs at a point. Methods and importers try points beyond the end of a piece, where
+   * it may have no value. False if no piece changes. After true, return_pieces() restores the modes.
    */
   bool (*change_pieces)(struct Instance *instance, const struct Point *point);
   void (*return_pieces)(struct Instance *instance);
