@@ -140,13 +140,13 @@ class Slave2(Slave):
         if references:
             self.fmu.setRealInputDerivatives(references, orders, rates)
 
-    def saved(self, place):
-        """Save the FMU state in the slot `place`, whose memory is reused; return it."""
-        if place == len(self.states):
+    def saved(self, slot):
+        """Save the FMU state in a slot, whose memory is reused; return it."""
+        if slot == len(self.states):
             self.states.append(self.fmu.getFMUstate())
         else:
-            self.fmu.fmi2GetFMUstate(self.fmu.component, byref(self.states[place]))
-        return self.states[place]
+            self.fmu.fmi2GetFMUstate(self.fmu.component, byref(self.states[slot]))
+        return self.states[slot]
 
     def free(self):
         for state in self.states:
@@ -246,7 +246,7 @@ class Slave3(Slave):
     def _is_asked(self, begin, end):
         state, self.is_looking = self.fmu.getFMUState(), True
         try:
-            self.reach(begin, end, None, lambda time: None, None)
+            self.advance(begin, end, None, lambda time: None, None)
         except (FMICallException, Problem):  # is reported if the step fails again
             pass
         finally:
@@ -263,11 +263,11 @@ class Slave3(Slave):
         for low, high, constant in parts:
             if constant is not None:
                 self.set(constant)
-            self.reach(low, high, constant, lambda time: None if piece is None else value(piece, time - begin), record)
+            self.advance(low, high, constant, lambda time: None if piece is None else value(piece, time - begin), record)
         if piece is not None:
             self.set(value(piece, end - begin))
 
-    def reach(self, time, end, constant, inputs, record):
+    def advance(self, time, end, constant, inputs, record):
         """Step to `end` through all events, with the inputs `constant`; inputs(time) are the true inputs, for rows."""
         while time < end:
             is_event, ends, is_early, last = self.fmu.doStep(time, end - time)

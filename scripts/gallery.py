@@ -111,10 +111,10 @@ STYLE = """
 """
 
 
-def places(pages):
+def paths_of(pages):
     """Yield the paths of all pages."""
     for page in pages.values():
-        yield from places(page) if isinstance(page, dict) else [page]
+        yield from paths_of(page) if isinstance(page, dict) else [page]
 
 
 def write_system(archive):
@@ -138,7 +138,7 @@ def write_system(archive):
         links = {"<b>live</b>": "live.html"} | links
     except Problem as problem:  # an FMU whose method has no sources in it
         print(f"scripts/gallery: no live page: {problem}", file=sys.stderr)
-    addresses = {text: f"systems/{name}/{place}" for text, place in links.items()}
+    addresses = {text: f"systems/{name}/{path}" for text, path in links.items()}
     name_of_first, first = next(iter(addresses.items()))
     if can_be_edited(name):
         addresses = {name_of_first: first, "edit": f"laboratory.html#{name}"} | addresses
@@ -164,20 +164,20 @@ def write_laboratory(names):
     return 'In the [laboratory](laboratory.html) you change them, or write your own: it derives the equations in your browser.\n'
 
 
-def write_pages(places):
+def write_pages(paths):
     """Write the pages of the tree, with the reference cut into its parts, and return the navigation of the reference."""
     source = (ROOT / "fmu" / "README.md").read_text(encoding="utf-8")
     reference, navigation = reference_pages(source, (ROOT / "fmu" / "system.xsd").read_text(encoding="utf-8"))
     sections = sections_of(source)
-    for place in places:
-        (PAGES / place).parent.mkdir(parents=True, exist_ok=True)
-        if place.endswith(".md"):
-            write_whole(PAGES / place, relink((ROOT / place).read_text(encoding="utf-8"), place, place, sections))
+    for path in paths:
+        (PAGES / path).parent.mkdir(parents=True, exist_ok=True)
+        if path.endswith(".md"):
+            write_whole(PAGES / path, relink((ROOT / path).read_text(encoding="utf-8"), path, path, sections))
         else:
-            shutil.copy(ROOT / place, PAGES / place)
-    for place, text in reference.items():
-        (PAGES / place).parent.mkdir(parents=True, exist_ok=True)
-        write_whole(PAGES / place, text)
+            shutil.copy(ROOT / path, PAGES / path)
+    for path, text in reference.items():
+        (PAGES / path).parent.mkdir(parents=True, exist_ok=True)
+        write_whole(PAGES / path, text)
     parts = [f"::: {module}\n    options:\n      members: {json.dumps(members)}" for module, members in PYTHON.items()]
     write_whole(PAGES / "python.md", "\n\n".join(["# Python functions and classes", PYTHON_WORDS, *parts]))
     return navigation
@@ -207,7 +207,7 @@ def main():
     if not archives:
         sys.exit("scripts/gallery: there are no FMUs in build/fmu")
     shutil.rmtree(PAGES, ignore_errors=True)
-    contents = READ | {"Reference": write_pages({*places(READ), *BESIDE} - MADE)}
+    contents = READ | {"Reference": write_pages({*paths_of(READ), *BESIDE} - MADE)}
     with ThreadPoolExecutor() as pool:
         cards = list(pool.map(write_system, archives))
     words = "Each system runs in its live page, without a server or a network: the FMU itself is in the page. "

@@ -31,17 +31,17 @@ class Instance:
 
     def __init__(self, archive, runner):
         self.folder = tempfile.TemporaryDirectory(prefix="sweep-")  # deleted with the worker
-        place = Path(self.folder.name)
-        (place / "system.fmu").write_bytes(archive)
-        (place / "runner").write_bytes(runner)
-        unzipped = extract(str(place / "system.fmu"), self.folder.name)
+        folder = Path(self.folder.name)
+        (folder / "system.fmu").write_bytes(archive)
+        (folder / "runner").write_bytes(runner)
+        unzipped = extract(str(folder / "system.fmu"), self.folder.name)
         self.description, self.messages = read_model_description(unzipped), []
         self.slave = FMU2Slave(guid=self.description.guid, unzipDirectory=unzipped, instanceName="sweep",
                                modelIdentifier=self.description.coSimulation.modelIdentifier)  # fmt: skip
         self.callbacks = fmi2CallbackFunctions()
         self.logger = fmi2CallbackLoggerTYPE(lambda *words: self.messages.append(words[4].decode().replace("%%", "%")))
         self.environment = c_void_p(cast(self.logger, c_void_p).value)
-        self.runner = CDLL(str(place / "runner"))
+        self.runner = CDLL(str(folder / "runner"))
         self.runner.sweep_runs.restype = c_size_t
         self.callbacks.logger = cast(self.runner.sweep_log, fmi2CallbackLoggerTYPE)
         self.callbacks.componentEnvironment = addressof(self.environment)
@@ -186,10 +186,10 @@ def run_chunk(archive, runner, numbers, rows, names, settings, ensemble=None):
 
     `archive` and `runner` are the bytes of the FMU and of the library of sweep_runs.c. `ensemble` is an Ensemble, or None.
     """
-    place = threading.get_ident(), hashlib.sha256(archive).hexdigest()
-    if place not in opened:
-        opened[place] = Instance(archive, runner)
-    instance = opened[place]
+    key = threading.get_ident(), hashlib.sha256(archive).hexdigest()
+    if key not in opened:
+        opened[key] = Instance(archive, runner)
+    instance = opened[key]
     one = rows, names, settings
     results = run_in_lanes(ensemble, instance, *one) if ensemble else run_by_fmi(instance, *one)
     columns = {"run": np.array(numbers)} | dict(zip(names, rows.T))

@@ -36,6 +36,8 @@ NAMES = {
     r"pushes": "impulses or forces",
     r"turned": "rotated",
     r"oblique": "nonsymmetric",
+    r"mobility": "inverse mass or Delassus matrix",
+    r"bordered": "constrained",
     r"stillness": "regularization",
     r"promised|crawls?": "predicted or stagnation",
     r"facts": "metadata",

@@ -30,7 +30,7 @@ class Hinge(Master):
     def __init__(self, M, m, l=0.5):
         self.starts = body_on_axis(M), dict(m=m, l=l, g=G)
         self.left, self.right = (Slave(archive, **start) for archive, start in zip((FMUS / "ParticleCartesian.fmu", PENDULUM), self.starts))
-        self.mobility = self.left.partial("der(vx)", "Fx")
+        self.inverse_mass = self.left.partial("der(vx)", "Fx")
 
     def begin(self, state, past=()):
         """Start at the state x, v, theta, omega; `past` has (H, a) at earlier communication points, the latest first."""
@@ -38,12 +38,12 @@ class Hinge(Master):
         self.left.restart(**(self.starts[0] | dict(x=x, vx=v)))
         self.right.restart(**(self.starts[1] | dict(theta=theta, omega=omega)))
         force = self.right.get("H") / (1.0 - self.slope())
-        self.now = force, self.mobility * force
+        self.now = force, self.inverse_mass * force
         self.past = list(past)
 
     def slope(self):
         """Return the gain of the algebraic loop, dH/da * da/dH."""
-        return self.right.partial("H", "a") * self.mobility
+        return self.right.partial("H", "a") * self.inverse_mass
 
     def state(self):
         return [*self.left.get("x", "vx"), *self.right.get("theta", "omega")]

@@ -62,7 +62,7 @@ class Master:
         self.spring = Slave(FMUS / "SpringDamper.fmu", k=k, c=c, l0=l0)
         # Derivatives for Newton's method: of the force by position and velocity of one end, and of the relative acceleration by the force.
         self.stiffness, self.damping = self.spring.partial("F1", "x1"), self.spring.partial("F1", "v1")
-        self.mobility = self.left.partial("der(vx)", "Fx") + self.right.partial("der(vx)", "Fx")
+        self.inverse_mass = self.left.partial("der(vx)", "Fx") + self.right.partial("der(vx)", "Fx")
 
     def begin(self, state, past=()):
         """Start at the state x1, v1, x2, v2, with the `past` of earlier communication points."""
@@ -128,7 +128,7 @@ class Master:
         basis = derivatives_at_start([step, *times], [1.0, *(0.0 for _ in values)])
         velocity = sum(d * step ** (i + 1) / np.prod(range(1, i + 2)) for i, d in enumerate(basis))
         position = sum(d * step ** (i + 2) / np.prod(range(1, i + 3)) for i, d in enumerate(basis))
-        slope = self.mobility * (self.stiffness * position + self.damping * velocity)
+        slope = self.inverse_mass * (self.stiffness * position + self.damping * velocity)
         self.iterate(degree, step, lambda residual: residual / (1.0 - slope))
 
     def iterate(self, degree, step, correction):

@@ -28,7 +28,7 @@ class Task(NamedTuple):
     start: np.ndarray  # states
     end: np.ndarray  # states
     strength: np.ndarray  # bounds of |input|
-    reach: dict  # bounds of |state|, by the index of the state
+    state_bounds: dict  # bounds of |state|, by the index of the state
     duration: float  # initial guess of T, in s
     swings: float  # periods of a sine, the initial guess of the inputs
     intervals: int  # number of intervals with constant inputs
@@ -86,7 +86,7 @@ def least_time(unpacked, task):
     problem.subject_to(starts[:, task.intervals] == task.end)
     for row, bound in enumerate(task.strength):
         problem.subject_to(problem.bounded(-bound, casadi.vec(inputs[row, :]), bound))
-    for row, bound in task.reach.items():
+    for row, bound in task.state_bounds.items():
         problem.subject_to(problem.bounded(-bound, casadi.vec(starts[row, 1 : task.intervals]), bound))
     problem.subject_to(problem.bounded(0.1, duration, LONGEST))
     problem.minimize(duration)

@@ -207,9 +207,9 @@ def test_driven_mechanism(open_fmu):
         t, state = instance.time, instance.get(*states)
         assert state[0] == pytest.approx(1 + 10.3 * t - 2.3 * np.sin(t), abs=1e-8)
         matrix, right = definition.system(t, *state, *parameters)
-        bordered = np.zeros((6, 6))
-        bordered[:5, :5], bordered[5, 0], bordered[0, 5] = np.array(matrix, float), 1, 1
-        solution = np.linalg.solve(bordered, [*np.array(right, float).ravel(), 2.3 * np.sin(t)])
+        saddle = np.zeros((6, 6))
+        saddle[:5, :5], saddle[5, 0], saddle[0, 5] = np.array(matrix, float), 1, 1
+        solution = np.linalg.solve(saddle, [*np.array(right, float).ravel(), 2.3 * np.sin(t)])
         ours = instance.get("der(omegaCoupler)", "der(omegaRocker)", "loopX.force", "loopY.force", "theta.force")
         np.testing.assert_allclose(ours, [*solution[1:5], -solution[5]], rtol=1e-9, atol=1e-9)
         x = 0.3 * np.cos(state[0]) + 0.8 * np.cos(state[1]) - 0.9 - 0.6 * np.cos(state[2])

@@ -42,7 +42,7 @@ def check(task, unpacked):
     motion = least_time(unpacked, task)
     assert abs(play_back(unpacked, task, motion) - motion.states).max() < 1e-6
     assert (abs(motion.inputs) <= task.strength * (1 + 1e-7)).all()
-    assert all(abs(motion.states[:, row]).max() <= bound + 1e-6 for row, bound in task.reach.items())
+    assert all(abs(motion.states[:, row]).max() <= bound + 1e-6 for row, bound in task.state_bounds.items())
     np.testing.assert_allclose(motion.states[[0, -1]], [task.start, task.end], atol=1e-8)
     return motion, abs(motion.inputs) > 0.99 * task.strength
 

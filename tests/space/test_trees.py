@@ -104,8 +104,8 @@ def absolute_accelerations(angles, rates, prescribed=None):
     joint, acceleration = prescribed
     row = np.zeros(n)
     row[joint], row[joint - 1] = 1, -1
-    bordered = np.block([[mass, row[:, None]], [row[None], np.zeros((1, 1))]])
-    return np.linalg.solve(bordered, [*right, acceleration])[:n]
+    saddle = np.block([[mass, row[:, None]], [row[None], np.zeros((1, 1))]])
+    return np.linalg.solve(saddle, [*right, acceleration])[:n]
 
 
 @pytest.mark.parametrize("name", ["FoldingPendulum", "DrivenPendulum"])

@@ -77,11 +77,11 @@ static bool any_takes_part(const struct Resolution *resolution) {
   return any;
 }
 
-static bool any_pulls(const struct Resolution *resolution) {
-  bool pulls = false;
+static bool any_is_in_tension(const struct Resolution *resolution) {
+  bool any = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    pulls |= contact_is_closed(resolution, i) && contact_force(resolution, i) < 0.0;
-  return pulls;
+    any |= contact_is_closed(resolution, i) && contact_force(resolution, i) < 0.0;
+  return any;
 }
 
 /*
@@ -97,7 +97,7 @@ static bool close_useful(struct Resolution *resolution) {
     useless = find_useless(resolution);
     if (useless < count) resolution->takes_part[useless] = 0.0;
   } while (useless < count);
-  return !any_pulls(resolution);
+  return !any_is_in_tension(resolution);
 }
 
 const char *contacts_share_load(struct Resolution *resolution, bool *again) {

@@ -137,8 +137,8 @@ static void note_redundant(struct Instance *instance) {
 enum Status exchange_leave_event_mode(struct Instance *instance) {
   struct FmuState *fmu_state = instance->fmu_state;
   bool is_exchange = instance->kind == KIND_MODEL_EXCHANGE;
-  bool lacks_update = fmu_state->update == UPDATE_MISSING || (is_exchange && fmu_state->update == UPDATE_BEFORE_CHANGE);
-  if (lacks_update && exchange_is_event_due(instance))
+  bool needs_update = fmu_state->update == UPDATE_MISSING || (is_exchange && fmu_state->update == UPDATE_BEFORE_CHANGE);
+  if (needs_update && exchange_is_event_due(instance))
     return reject_call(instance, "an event is due; expected an update of the discrete states before it");
   fmu_state->phase = is_exchange ? PHASE_CONTINUOUS_TIME : PHASE_STEP_COMPLETE;
   if (is_exchange) note_redundant(instance);

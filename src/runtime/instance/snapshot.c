@@ -74,14 +74,14 @@ static bool can_wait(const struct Instance *instance, const struct FmuState *fix
 }
 
 /*
- * True if the states and the parameters are finite. Before the simulation, states and modes may lack finite values if
+ * True if the states and the parameters are finite. Before the simulation, states and modes may be undefined if
  * start values follow from parameters.
  */
 static bool are_values(int32_t phase, const char *states, const char *parameters) {
   bool is_early = phase == PHASE_INSTANTIATED || phase == PHASE_INITIALIZATION || phase == PHASE_ERROR;
-  bool may_lack = is_early && lagrangian.following_count > 0;
-  size_t modes = may_lack && lagrangian.switches != NULL ? lagrangian.switches->mode_count : 0;
-  return (may_lack || snapshot_is_finite(states, lagrangian.state_count)) &&
+  bool may_be_undefined = is_early && lagrangian.following_count > 0;
+  size_t modes = may_be_undefined && lagrangian.switches != NULL ? lagrangian.switches->mode_count : 0;
+  return (may_be_undefined || snapshot_is_finite(states, lagrangian.state_count)) &&
          snapshot_is_finite(parameters, lagrangian.parameter_count - modes);
 }
 

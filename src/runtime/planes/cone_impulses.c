@@ -78,12 +78,12 @@ static double share_of_miss(const struct Cones *cones, double miss) {
   return miss > DBL_EPSILON * fastest ? miss / cones_largest(cones) : 0.0;
 }
 
-static void push_contact(struct Cones *cones, size_t row, double part) {
+static void update_contact_impulse(struct Cones *cones, size_t row, double part) {
   double whole = fmax(cones->impulse[row] - cones_rate_behind(cones, row) / cones->scale[row], 0.0);
   cones->impulse[row] += part * (whole - cones->impulse[row]);
 }
 
-static void push_friction(struct Cones *cones, size_t row, size_t rows, double part) {
+static void update_friction_impulse(struct Cones *cones, size_t row, size_t rows, double part) {
   double whole[2] = {0.0, 0.0}, limit = fmax(cones_limit(cones, row), 0.0);
   if (!(cones->scale[row] > 0.0)) return;
   for (size_t i = 0; i < rows; i++)
@@ -95,8 +95,8 @@ static void push_friction(struct Cones *cones, size_t row, size_t rows, double p
 static void sweep_contacts(struct Cones *cones, double part) {
   for (size_t row = 0; row < cones->impulses->count;) {
     size_t rows = cones_row_count(cones, row);
-    if (row < cones->impulses->contact_count) push_contact(cones, row, part);
-    else push_friction(cones, row, rows, part);
+    if (row < cones->impulses->contact_count) update_contact_impulse(cones, row, part);
+    else update_friction_impulse(cones, row, rows, part);
     row += rows;
   }
 }

@@ -66,7 +66,7 @@ static bool fill_jacobian_rows(const struct PlaneLoads *loads) {
   return true;
 }
 
-static bool push_the_same(const struct PlaneLoads *loads, size_t i, size_t j) {
+static bool act_on_the_same(const struct PlaneLoads *loads, size_t i, size_t j) {
   const double *one = loads->jacobian_row + 2 * i * loads->n, *other = loads->jacobian_row + 2 * j * loads->n;
   bool same = false;
   for (size_t k = 0; k < loads->n; k++)
@@ -83,7 +83,7 @@ static void collect_members(struct PlaneLoads *loads, size_t first) {
     grows = false;
     for (size_t i = 0; i < count; i++)
       for (size_t j = 0; j < count; j++) {
-        if (loads->member[i] == 0.0 || loads->member[j] != 0.0 || !push_the_same(loads, i, j)) continue;
+        if (loads->member[i] == 0.0 || loads->member[j] != 0.0 || !act_on_the_same(loads, i, j)) continue;
         loads->member[j] = 1.0;
         loads->count++;
         grows = true;
@@ -124,7 +124,7 @@ static void take_forces(const struct PlaneLoads *loads, const struct SharedLoad 
  * constrain their velocities, since constraints would take too much of a changing load again and again. False if
  * that cannot be determined.
  */
-static bool let_weak_push(const struct PlaneLoads *loads) {
+static bool release_weak(const struct PlaneLoads *loads) {
   struct Resolution *resolution = loads->resolution;
   double most = 0.0;
   for (size_t i = 0; i < resolution->switches->plane_count; i++)
@@ -134,7 +134,7 @@ static bool let_weak_push(const struct PlaneLoads *loads) {
     struct PlaneState state = plane_state(resolution, i);
     bool is_constrained = false, is_weak = state.stiction < weak_share * most && plane_has_part(resolution, &state);
     if (loads->member[i] == 0.0 || !is_weak) continue;
-    plane_push(resolution, &state);
+    plane_release(resolution, &state);
     is_determined = frictions_find_constrained(resolution, state.metadata->along, &is_constrained);
     if (!is_constrained) plane_hold(resolution, &state);
   }
@@ -154,7 +154,7 @@ static bool share_load(const struct PlaneLoads *loads) {
   enum LoadSharing sharing = shared_load_carry(&load);
   if (sharing != LOAD_OVERCOMES) take_forces(loads, &load, sharing == LOAD_IS_AT_LIMIT);
   scratch_return(instance, SCRATCH_SHARES);
-  return sharing == LOAD_IS_AT_LIMIT || (sharing == LOAD_IS_SHARED && let_weak_push(loads));
+  return sharing == LOAD_IS_AT_LIMIT || (sharing == LOAD_IS_SHARED && release_weak(loads));
 }
 
 bool plane_loads_share(struct Resolution *resolution, size_t plane) {

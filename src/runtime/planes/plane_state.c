@@ -107,7 +107,7 @@ void plane_stick(struct Resolution *resolution, const struct PlaneState *state) 
   plane_carry(resolution, state, nothing);
 }
 
-void plane_push(struct Resolution *resolution, const struct PlaneState *state) {
+void plane_release(struct Resolution *resolution, const struct PlaneState *state) {
   set_plane_mode(resolution, state, PLANE_SLIPS, 3.0 * state->none, 3.0 * state->none);
 }
 
@@ -144,5 +144,5 @@ void plane_free(struct Resolution *resolution, const struct PlaneState *state) {
 
 void plane_slip(struct Resolution *resolution, const struct PlaneState *state, const double slip_direction[2]) {
   set_slip_direction(resolution, state, slip_direction);
-  plane_push(resolution, state);
+  plane_release(resolution, state);
 }

@@ -63,10 +63,11 @@ void plane_stick(struct Resolution *resolution, const struct PlaneState *state);
 void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]);
 
 /*
- * Release and hold a friction whose velocity other constraints hold. plane_push() keeps the given force as a friction
- * force without a constraint. plane_hold() lets the friction stick again, with the same force.
+ * Release, and constrain again, a friction whose velocity other constraints keep at 0. plane_release() keeps the
+ * given force as a friction force without a constraint. plane_hold() lets the friction stick again, with the same
+ * force.
  */
-void plane_push(struct Resolution *resolution, const struct PlaneState *state);
+void plane_release(struct Resolution *resolution, const struct PlaneState *state);
 void plane_hold(struct Resolution *resolution, const struct PlaneState *state);
 
 /* True if the given force is below the kinetic friction force, and so not that of sliding. */

@@ -84,10 +84,9 @@ static void write_joint_force(const struct Writer *writer, const struct RobotJoi
 }
 
 /* Adds an actuator's force to the sum for a joint that limits it, see write_limited_forces(). */
-static void add_push(struct RobotJoint *joint, char *actuator_limits) {
-  joint->actuator_forces = joint->actuator_forces == NULL
-                               ? actuator_limits
-                               : format_text("%s + %s", joint->actuator_forces, actuator_limits);
+static void add_actuator_force(struct RobotJoint *joint, char *force) {
+  joint->actuator_forces =
+      joint->actuator_forces == NULL ? force : format_text("%s + %s", joint->actuator_forces, force);
 }
 
 void write_term(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
@@ -102,7 +101,7 @@ void write_term(const struct Writer *writer, const struct Transmission *transmis
   for (size_t i = 0; i < transmission->count; i++) {
     const struct TransmissionTerm *term = &transmission->terms[i];
     if (is_of_actuator && !isnan(term->joint->actuator_limits[0]))
-      add_push(term->joint, format_text("%s*%s*(%s)", gear, coefficient_of(term), force));
+      add_actuator_force(term->joint, format_text("%s*%s*(%s)", gear, coefficient_of(term), force));
     else write_joint_force(writer, term->joint, format_text("%s*%s*(%s)", gear, share_of(term), force));
   }
 }
