@@ -36,7 +36,11 @@ RAMP = """<system name="Ramp"><parameter name="mu" start="0.2"/><parameter name=
   <friction name="rub" velocity="0.8*vx + 0.6*vy" force="mu*abs(ramp.force)"/></system>"""
 # Water that rises to a weir and over it, where the root of the flow begins.
 WEIR = """<system name="Weir"><parameter name="q" start="0.1"/><parameter name="k" start="0.5"/><state name="h" start="0.5" rate="q - k*sqrt(max(0, h - 1))"/></system>"""
-SWITCHED = {"Ramp": (RAMP, ["mu", "g", "e", "l"]), "Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"]), "Weir": (WEIR, ["q", "k"])}
+# A sampled controller that stores its output.
+HOLD = """<system name="{name}"><parameter name="K" start="2"/><coordinate name="x" velocity="v" start="1"/>{store}<particle mass="1" x="x"/><force coordinate="x">u</force>
+  <sample every="0.1"><set {kind}="u">-K*x - 2*v</set></sample></system>"""
+SWITCHED = {"Ramp": (RAMP, ["mu", "g", "e", "l"]), "Slope": (SLOPE, ["mu", "g", "e", "u"]), "Ball": (BALL, ["h", "g", "e"]), "Belt": (BELT, ["k", "F", "u"]), "Weir": (WEIR, ["q", "k"]),
+            "Held1": (HOLD.format(name="Held1", store='<state name="u" rate="0"/>', kind="state"), ["K"]), "Held2": (HOLD.format(name="Held2", store='<mode name="u"/>', kind="mode"), ["K"])}
 SYSTEMS = {"Oscillator": (OSCILLATOR, AT), "Fitted": (OSCILLATOR, FITTED), "Double": (DOUBLE, DOUBLE_AT), "Turning": (TURNING, ["k", "c", "x"]),
            "Worked": (WORKED, list(AT)), "Held": (CONSTRAINED, CONSTRAINED_BY), "Twice": (CONSTRAINED_TWICE, CONSTRAINED_BY), "Flat": (FLAT, ["g"])}  # fmt: skip
 
@@ -99,6 +103,27 @@ def test_through_impacts(lagrange_fmu, monkeypatch):  # noqa: F811
     _, derivatives = motion_through_events("Ball", ["h", "v"], times, at, monkeypatch, ways)
     assert len(ways) == 1 and 0.999 < ways[0] / (fall * (1 + 2 * 0.7 / 0.3)) < 1
     assert derivatives[-1] == pytest.approx(np.zeros((2, 3)), abs=1e-4)
+
+
+def test_through_samples_that_store_a_state(lagrange_fmu, monkeypatch):  # noqa: F811
+    """Between samples u is constant: x(t + h) = x + h v + u h^2/2, v(t + h) = v + h u."""
+    at = {"K": 2.0}
+
+    def position(gain, time):
+        x, v, rest = mpmath.mpf(1), mpmath.mpf(0), time
+        while rest > 0:
+            u, h = -gain * x - 2 * v, min(rest, mpmath.mpf("0.1"))
+            x, v, rest = x + h * v + u * h**2 / 2, v + h * u, rest - h
+        return x
+
+    times = [0.0, 0.05, 1.05]
+    values, derivatives = motion_through_events("Held1", ["x"], times, at, monkeypatch, [])
+    for time, value, row in zip(times, values, derivatives):
+        time = mpmath.mpf(str(time))
+        assert value[0] == pytest.approx(float(position(2, time)), rel=1e-9)
+        assert row[0, 0] == pytest.approx(float(mpmath.diff(lambda gain: position(gain, time), 2)), rel=1e-8, abs=1e-10)
+    with pytest.raises(lagrange_fmu.Problem, match='at the start u is set to a number that varies with \'K\', .*; expected <state name="u" rate="0"/> with <set state> in place of the mode'):
+        motion_through_events("Held2", ["x"], times, at, monkeypatch, [])
 
 
 def test_through_the_onset_of_a_root(lagrange_fmu, monkeypatch):  # noqa: F811

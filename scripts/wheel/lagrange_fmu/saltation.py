@@ -49,6 +49,11 @@ def crossing_of(indicators, begin, end):
     return times[nearest] + CROSSING_DELAY * unit, crossing[nearest]
 
 
+def stored_in_a_state(modes):
+    """Return the remedy for modes that events set to values that depend on the motion."""
+    return f"expected <state name=\"{modes[0]}\" rate=\"0\"/> with <set state> in place of the mode"
+
+
 class OtherModes(Problem):
     """Neighbouring motions enter other modes at an event, so that the motion has no derivative."""
 
@@ -177,7 +182,7 @@ class Saltation:
         """Return the message for a neighbour whose modes with these names differ after the event."""
         quoted = ", ".join(f"'{name}'" for name in names)
         if {*names} <= {*self.point.numbers}:
-            return f"the event at {self.time:g} s sets {quoted} to numbers that vary {by}between neighbouring motions: derivatives by modes are not available, even where nothing depends on them; expected a system without that mode, or a stop time before the event"
+            return f"the event at {self.time:g} s sets {quoted} to numbers that vary {by}between neighbouring motions: derivatives by modes are not available, even where nothing depends on them; {stored_in_a_state(names)}, or a stop time before the event"
         return f"the event at {self.time:g} s leads some neighbouring motions into other modes, of {quoted}, so that there is no derivative {by}through it; expected other values, or a stop time before it"
 
     def sizes_of(self, acting):

@@ -12,7 +12,7 @@ from fmpy.fmi1 import FMICallException
 
 from .differences import relevant, rules_within
 from .problem import Problem
-from .saltation import Saltation, crossing_of
+from .saltation import Saltation, crossing_of, stored_in_a_state
 from .stepping import Steps
 from .variables import whole_kind
 
@@ -58,8 +58,11 @@ class Start:
                 continue
             states, modes, sides = zip(*found)
             others = [mode for mode in modes if mode != self.modes]
+            differing = self.point.differing(self.modes, others[0]) if others else []
+            if differing and {*differing} <= {*self.point.numbers}:
+                raise Problem(f"at the start {', '.join(differing)} is set to a number that varies with '{name}', and derivatives by modes are not available; {stored_in_a_state(differing)}")
             if others:
-                why = f"from neighbouring values {', '.join(self.point.differing(self.modes, others[0]))} starts in another mode"
+                why = f"from neighbouring values {', '.join(differing)} starts in another mode"
                 break
             if (np.max(sides, axis=0) * np.min(sides, axis=0) < 0).any():
                 why = "from neighbouring values the motion starts on both sides of an event"
