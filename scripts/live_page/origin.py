@@ -17,6 +17,7 @@ class Origin(NamedTuple):
     system: Path  # the file of the system, or the URDF of a robot
     lagc: Path
     one_file: Callable[[Path, str], str]  # returns the FMU's source as one file, for a system.c and the FMU's name
+    words: tuple[str, ...] = ()  # further arguments of lagc
 
 
 def pulled_system(origin, source, folder):
@@ -27,7 +28,7 @@ def pulled_system(origin, source, folder):
     does not allow such forces.
     """
     method = re.search(r"\.solver = &solver_([a-z]+)", Path(source).read_text(encoding="utf-8"))
-    words = ["--solver", method[1]] if method else []
+    words = [*origin.words, *(["--solver", method[1]] if method else [])]
     lagc = subprocess.run([origin.lagc, origin.system, "-o", folder, "--pull", *words], capture_output=True, text=True)
     if lagc.returncode != 0:
         return None

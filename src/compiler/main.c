@@ -23,7 +23,7 @@
 
 static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--arrays]\n"
-    "            [--along NAME ...] [-D NAME=VALUE ...]\n"
+    "            [--along NAME ...] [-D NAME=VALUE ...] [--robot WORD=VALUE ...]\n"
     "       lagc --linearize SYSTEM.xml [--at NAME=VALUE ...] [-D NAME=VALUE ...]\n"
     "       lagc --equations SYSTEM.xml [-D NAME=VALUE ...]\n"
     "       lagc --value NAME=VALUE --unit UNIT\n"
@@ -36,6 +36,10 @@ static const char usage[] =
     "  -o DIR           the directory for the files\n"
     "  --solver METHOD  %s in place of the system's own\n"
     "  -D NAME=VALUE    the value of a <constant>, such as 3, 2*pi or 20cm\n"
+    "  --robot WORD=VALUE\n"
+    "                   an option for the file of a robot, as in an <include>: base=floating, ground=true, "
+    "limits=stops,\n"
+    "                   friction=sticks, effort=limited, keyframe=NAME, tool=LINK\n"
     "  --form FORM      the form of the code: statements or tables; by default by the system's size\n"
     "  --pull           adds inputs of a spring that pulls a body: its stiffness pull.of.BODY; its point on the body, "
     "in the\n"
@@ -53,8 +57,8 @@ static const char usage[] =
 /* The arguments of the command line; NULL and 0 for those that are missing. */
 struct Arguments {
   const char *system, *directory, *solver, *value, *unit;
-  const char **definitions;
-  size_t definition_count;
+  const char **definitions, **robot;
+  size_t definition_count, robot_count;
   const char **along;
   size_t along_count;
   char **point;
@@ -87,12 +91,13 @@ static bool parse_arguments(int count, char **words, struct Arguments *arguments
     const char *word = words[i], *next = i + 1 < count ? words[i + 1] : "";
     bool takes_value = strcmp(word, "-o") == 0 || strcmp(word, "--solver") == 0 || strcmp(word, "-D") == 0 ||
                        strcmp(word, "--at") == 0 || strcmp(word, "--form") == 0 || strcmp(word, "--along") == 0 ||
-                       strcmp(word, "--value") == 0 || strcmp(word, "--unit") == 0;
+                       strcmp(word, "--robot") == 0 || strcmp(word, "--value") == 0 || strcmp(word, "--unit") == 0;
     if (takes_value && i + 1 == count) return false;
     if (takes_value) i++;
     if (strcmp(word, "-o") == 0) arguments->directory = next;
     else if (strcmp(word, "--solver") == 0) arguments->solver = next;
     else if (strcmp(word, "--along") == 0) arguments->along[arguments->along_count++] = next;
+    else if (strcmp(word, "--robot") == 0) arguments->robot[arguments->robot_count++] = next;
     else if (strcmp(word, "--value") == 0) arguments->value = next;
     else if (strcmp(word, "--unit") == 0) arguments->unit = next;
     else if (strcmp(word, "--at") == 0) append_point(arguments, next);
@@ -150,6 +155,8 @@ static int run(const struct Arguments *arguments) {
   struct Diagnostics diagnostics = {.file = arguments->system};
   struct ReaderOptions options = {.definitions = arguments->definitions,
                                   .definition_count = arguments->definition_count,
+                                  .robot = arguments->robot,
+                                  .robot_count = arguments->robot_count,
                                   .solver = arguments->solver,
                                   .point = (const char *const *)arguments->point,
                                   .point_count = arguments->point_count,
@@ -199,6 +206,7 @@ int main(int count, char **words) {
   signal(SIGXFSZ, SIG_IGN); /* exceeding the user's file size limit is then reported like a full disk */
 #endif
   struct Arguments arguments = {.definitions = allocate((size_t)count, sizeof(char *)),
+                                .robot = allocate((size_t)count, sizeof(char *)),
                                 .along = allocate((size_t)count, sizeof(char *))};
   int status = 1;
   char *methods = method_names();

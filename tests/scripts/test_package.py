@@ -214,6 +214,23 @@ def test_templates(template, command, tmp_path):
     assert succeed(result).startswith("Mine: ") and result.stderr == ""
 
 
+def test_options_for_robots(command, tmp_path):
+    """The base of a cube moves freely above a ground: 14 states, and the parameters of the contacts."""
+    (tmp_path / "cube.urdf").write_text("""<robot name="cube"><link name="cube"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><sphere radius="1"/></geometry></collision></link></robot>""")
+    (tmp_path / "cube.xml").write_text('<mujoco><worldbody><body><freejoint/><geom size="1"/></body></worldbody><keyframe><key name="up" qpos="0 0 1 1 0 0 0"/></keyframe></mujoco>')
+    result = command("check", "cube.urdf", cwd=tmp_path)
+    assert result.returncode == 1 and 'expected one of another type than fixed, or base="floating" in an <include>, or --base floating on the command line' in result.stderr
+    assert succeed(command("check", "cube.urdf", "--base", "floating", cwd=tmp_path)).startswith("cube: 14 states, 0 inputs, ")
+    for ground in (["--ground"], ["--feet", "cube"]):
+        assert ", 4 parameters" in succeed(command("check", "cube.urdf", "--base", "floating", *ground, "--limits", "stops", "--friction", "sticks", "--effort", "limited", cwd=tmp_path))
+    assert "there is no link 'cub' for the ground; did you mean 'cube'?" in command("check", "cube.urdf", "--base", "floating", "--feet", "cub", cwd=tmp_path).stderr
+    succeed(command("check", "cube.xml", "--keyframe", "up", cwd=tmp_path))
+    assert "there is no <key> 'down'" in command("check", "cube.xml", "--keyframe", "down", cwd=tmp_path).stderr
+    assert "base=floating is for robots" in command("check", fmu.ROOT / "fmu" / "SimplePendulum", "--base", "floating", cwd=tmp_path).stderr
+    assert "is an FMU; expected the file of a robot for base=floating" in command("run", fmu.archive("SimplePendulum"), "--base", "floating", cwd=tmp_path).stderr
+
+
 def test_a_sweep(command, tmp_path):
     """The values of a linear pendulum are theta = theta0 cos(sqrt(g/l) t)."""
     words = ["--vary", "l=0.5,2", "--vary", "theta0=0.1:0.3:3", "--stop-time", "2", "--output", "runs.parquet"]

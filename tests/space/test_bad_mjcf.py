@@ -114,7 +114,7 @@ def test_the_valid_robot_compiles(tmp_path):
     (tmp_path / "arm.xml").write_text(RIGHT)
     result = lagc("arm.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0 and result.stderr == (
-        "arm.xml:7: warning: motion is not stopped at the limits of the joint 'shoulder'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>\n"
+        "arm.xml:7: warning: motion is not stopped at the limits of the joint 'shoulder'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>, or --limits stops on the command line\n"
     )
 
 

@@ -151,7 +151,7 @@ def test_right_one(tmp_path):
     assert (result.returncode, result.stderr) == (0, NO_STOPS)
 
 
-NO_STOPS = "robot.urdf:9: warning: motion is not stopped at the limits of the joint 'shoulder'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>\n"
+NO_STOPS = "robot.urdf:9: warning: motion is not stopped at the limits of the joint 'shoulder'; expected limits=\"stops\", or \"outputs\" if this is meant, in an <include>, or --limits stops on the command line\n"
 NO_BODY = "at the start values: a principal moment is negative, or larger than the other two together; expected others"
 
 
@@ -181,7 +181,7 @@ def test_left_out(tmp_path):
     assert result.stderr == (
         "robot.urdf: warning: left out, since the motion does not depend on them: collision, visual, velocity of limit, gazebo\n"
         f"{NO_STOPS}"
-        "robot.urdf:9: warning: motors may exceed the effort of the joint 'shoulder'; expected effort=\"limited\", or \"unlimited\" if this is meant, in an <include>\n"
+        "robot.urdf:9: warning: motors may exceed the effort of the joint 'shoulder'; expected effort=\"limited\", or \"unlimited\" if this is meant, in an <include>, or --effort limited on the command line\n"
     )
 
 

@@ -71,6 +71,7 @@ def simulate(
     stop_time: float | None = None,
     step: float | None = None,
     tolerance: float | None = None,
+    robot: Mapping[str, str | bool] | None = None,
     **options: Any,
 ) -> Result:
     """
@@ -104,6 +105,8 @@ def simulate(
         End of the simulation and communication step, in s; by default those of the FMU's experiment.
     tolerance : float, optional
         Relative tolerance; by default that of the FMU's experiment.
+    robot : dict, optional
+        Options for a robot, as for build().
     **options
         start_time (in s), debug_logging, visible, fmi_call_logger; in model exchange also the options of fmpy.simulate_fmu.
 
@@ -127,7 +130,7 @@ def simulate(
     from .results import Result
     from .running import motion_of
 
-    words = {"output": output, "input": input, "hold": hold, "fmi_type": fmi_type, "fmi": fmi, "solver": solver, "step": step, "tolerance": tolerance}
+    words = {"output": output, "input": input, "hold": hold, "fmi_type": fmi_type, "fmi": fmi, "solver": solver, "step": step, "tolerance": tolerance, "robot": robot}
     return Result.of(motion_of(system, start_values, None, stop_time=stop_time, record_events=record_events, **words, **options))
 
 
@@ -474,7 +477,7 @@ def run(
 
 
 @checked
-def live(system: str | PathLike[str], output: str | PathLike[str] | None = None, *, edit: bool = False, start_values: Mapping[str, float | str] | None = None) -> Path:
+def live(system: str | PathLike[str], output: str | PathLike[str] | None = None, *, edit: bool = False, start_values: Mapping[str, float | str] | None = None, robot: Mapping[str, str | bool] | None = None) -> Path:
     """
     Write a page in which the FMU of a system runs, in any browser and without a network.
 
@@ -488,6 +491,8 @@ def live(system: str | PathLike[str], output: str | PathLike[str] | None = None,
         True to show the system beside its motion, so that it can be changed in the page.
     start_values : dict, optional
         Start values, parameters and inputs by name with which the page begins, as numbers or texts such as "30deg"; not with `edit`.
+    robot : dict, optional
+        Options for a robot, as for build(); not with `edit`.
 
     Returns
     -------
@@ -505,7 +510,7 @@ def live(system: str | PathLike[str], output: str | PathLike[str] | None = None,
     """
     from .pages import live
 
-    return live(system, start_values, output, edit)
+    return live(system, start_values, output, edit, robot)
 
 
 @checked

@@ -9,7 +9,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from pathlib import Path
 from xml.etree import ElementTree
@@ -39,10 +39,16 @@ def system_file(system):
     return path
 
 
-def origin_of(system):
-    """Return the Origin of a system, from which live pages derive the variant whose bodies can be pulled."""
+def origin_of(system, words=()):
+    """Return the Origin of a system, from which live pages derive the variant whose bodies can be pulled. words: of lagc."""
     runtime = HERE / "runtime"
-    return Origin(system_file(system), LAGC, lambda code, name: one_file(runtime, runtime / "global_names", 2, code, name))
+    return Origin(system_file(system), LAGC, lambda code, name: one_file(runtime, runtime / "global_names", 2, code, name), tuple(words))
+
+
+def robot_words(robot):
+    """Return the arguments of lagc for options of a robot, such as {"base": "floating", "ground": True}."""
+    texts = {word: str(value).lower() if isinstance(value, bool) else value for word, value in (robot or {}).items()}
+    return [part for word, value in texts.items() for part in ("--robot", f"{word}={value if isinstance(value, str) else ' '.join(value)}")]
 
 
 def derive(system, folder, solver, words=()):
@@ -68,7 +74,7 @@ def method_of(folder):
     return found[1] if found else "none"
 
 
-def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
+def check(system: str | os.PathLike[str], solver: str | None = None, robot: Mapping[str, str | bool] | None = None) -> str:
     """
     Derive the equations of a system without building an FMU.
 
@@ -78,6 +84,8 @@ def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
         A system in XML, a robot in URDF, or a folder that contains a system.xml.
     solver : str, optional
         Method in place of the system's own.
+    robot : dict, optional
+        Options for a robot, as for build().
 
     Returns
     -------
@@ -94,7 +102,7 @@ def check(system: str | os.PathLike[str], solver: str | None = None) -> str:
     >>> print(lagrange_fmu.check("pendulum.xml"))
     """
     with tempfile.TemporaryDirectory() as scratch:
-        description = derive(system, Path(scratch), solver)
+        description = derive(system, Path(scratch), solver, robot_words(robot))
         method = method_of(Path(scratch))
     counts = {"state": len(description.findall("ModelStructure/Derivatives/Unknown"))}
     for causality in ("input", "output", "parameter"):
@@ -192,6 +200,7 @@ def build(
     output: str | os.PathLike[str] = ".",
     fmi: int = 2,
     arrays: bool = False,
+    robot: Mapping[str, str | bool] | None = None,
 ) -> Path:
     """
     Build the FMU of a system.
@@ -210,6 +219,8 @@ def build(
         Version of FMI.
     arrays : bool
         True to declare the variables that <for> repeats as arrays, in FMI 3.0.
+    robot : dict, optional
+        Options for a robot in URDF or MJCF, by the attributes of an <include>: {"base": "floating", "ground": True, "limits": "stops"}.
 
     Returns
     -------
@@ -225,7 +236,7 @@ def build(
     --------
     >>> path = lagrange_fmu.build("pendulum.xml", platforms=["linux64", "win64"])
     """
-    return build_with(("--arrays",) if arrays else (), system, platforms, solver, output, fmi)
+    return build_with([*(["--arrays"] if arrays else []), *robot_words(robot)], system, platforms, solver, output, fmi)
 
 
 def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from .building import origin_of, system_file
+from .building import origin_of, robot_words, system_file
 from .caching import share_zig_cache
 from .live_page.editor import write_editor
 from .live_page.page import write_page
@@ -22,12 +22,14 @@ def editor(system, output=None):
     return write_editor(file, LABORATORY, output or Path(f"{name}-edit.html"))
 
 
-def live(system, settings=None, output=None, edit=False):
+def live(system, settings=None, output=None, edit=False, robot=None):
     """See lagrange_fmu.live."""
     if edit and settings:
         raise Problem(f"an editable page of {system} starts with the values in the file; expected edit=True without {', '.join(settings)}")
+    if edit and robot:
+        raise Problem(f"an editable page of {system} starts with the file itself; expected edit=True without {', '.join(robot)}, or a <system> with an <include>")
     if edit:
         return editor(system, output)
     share_zig_cache()
-    with fmu_of(system) as fmu:
-        return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system), settings_of(fmu, settings))
+    with fmu_of(system, words=robot_words(robot)) as fmu:
+        return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system, robot_words(robot)), settings_of(fmu, settings))

@@ -160,13 +160,28 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   read_drawing(reader);
 }
 
+/* Converts the document of a robot to that of a system. Returns NULL after reporting errors. */
+static xmlDocPtr system_by_options(xmlDocPtr document, const struct ReaderOptions *options,
+                                   struct Diagnostics *diagnostics) {
+  struct RobotOptions of_robot;
+  bool is_right = robot_options_parse(options->robot, options->robot_count, &of_robot, diagnostics);
+  if (is_right && is_robot(document)) return system_of_robot(document, &of_robot, diagnostics);
+  if (is_right && options->robot_count > 0)
+    report_error(diagnostics, 0,
+                 "%s is for robots; expected a file that begins with <robot> or <mujoco>, or an <include> of it",
+                 options->robot[0]);
+  if (diagnostics->errors == 0) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}
+
 /* Reads a system, or a linearization with its system. depth: 1 for the system of a linearization. */
 static struct Model *read_file(const char *path, const struct ReaderOptions *options, struct Diagnostics *diagnostics,
                                int depth, struct Scope **scope) {
   struct Diagnostics local = {.file = path, .noted = diagnostics->noted};
   struct Model *model = NULL;
   xmlDocPtr document = xml_load(path, &local);
-  if (document != NULL && is_robot(document)) document = system_of_robot(document, &(struct RobotOptions){0}, &local);
+  if (document != NULL) document = system_by_options(document, options, &local);
   xmlNodePtr root = document != NULL ? xmlDocGetRootElement(document) : NULL;
   if (root != NULL && is_element(root, "linearization")) {
     char *original = depth == 0 ? linearized_path(root, path) : NULL;

@@ -4,7 +4,7 @@ import argparse
 import math
 
 from ..quantities import assignment
-from .shared_arguments import SYSTEM_OR_FMU
+from .shared_arguments import SYSTEM_OR_FMU, add_robot, robot_of
 
 
 def positive(text):
@@ -29,6 +29,7 @@ def arguments(parser):
     parser.add_argument("--hold", action="store_true", help="hold the inputs from line to line instead of interpolating")
     parser.add_argument("--no-events", action="store_true", help="omit the two rows of each event, before it and after it")
     parser.add_argument("--output", nargs="+", metavar="NAME", help="variables to record in place of all outputs")
+    add_robot(parser)
     parser.add_argument("-o", "--folder", default=".", metavar="FOLDER", help="folder of the results; default: the current folder")
 
 
@@ -38,6 +39,6 @@ def run(arguments):
 
     written = run(
         arguments.system, dict(arguments.start), arguments.folder, output=arguments.output, input=arguments.input, hold=arguments.hold, record_events=not arguments.no_events,
-        solver=arguments.solver, fmi=arguments.fmi, stop_time=arguments.stop_time, step=arguments.step, tolerance=arguments.tolerance,
+        solver=arguments.solver, fmi=arguments.fmi, stop_time=arguments.stop_time, step=arguments.step, tolerance=arguments.tolerance, robot=robot_of(arguments),
     )  # fmt: skip
     print_results(written)

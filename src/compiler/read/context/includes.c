@@ -80,11 +80,6 @@ static bool check_circle(struct Reader *reader, xmlNodePtr node, const struct So
   return false;
 }
 
-/* Attributes of <include> that are options for robots. */
-enum { ROBOT_WORDS = 7 };
-static const char *const of_robots[ROBOT_WORDS] = {"base",   "tool",   "limits",  "friction",
-                                                   "effort", "ground", "keyframe"};
-
 /*
  * Returns the document of a <system> file, or the system made from a robot file with the options of the <include>. NULL
  * after reporting errors.
@@ -101,10 +96,10 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
                  (const char *)root->name);
   else
     for (size_t i = 0; i < ROBOT_WORDS; i++)
-      if (has_attribute(source->include, of_robots[i]))
+      if (has_attribute(source->include, robot_word(i)))
         report_error(diagnostics, line_of(root),
                      "%s=\"...\" of <include> is for robots; expected a file that begins with <robot> or <mujoco>",
-                     of_robots[i]);
+                     robot_word(i));
   if (diagnostics->errors == 0) return document;
   xmlFreeDoc(document);
   return NULL;
@@ -113,26 +108,16 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
 /* Returns the document of a source. It is parsed once for all <include>s of this file with the same options. */
 static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
   char *key = copy_text(source->canonical_path);
+  const char *texts[ROBOT_WORDS];
   for (size_t i = 0; i < ROBOT_WORDS; i++) {
-    const char *said = attribute(source->include, of_robots[i]);
-    key = format_text("%s\n%s", key, said != NULL ? said : "");
+    texts[i] = attribute(source->include, robot_word(i));
+    key = format_text("%s\n%s", key, texts[i] != NULL ? texts[i] : "");
   }
   struct Document *known = names_find(reader->includes->documents, key);
   if (known == NULL) {
     struct Diagnostics local = {.file = source->file, .origin = source->origin, .noted = reader->diagnostics->noted};
     known = allocate(1, sizeof *known);
-    const char *ground = attribute(source->include, "ground");
-    struct RobotOptions options = {.floats = attribute_is(source->include, "base", "floating"),
-                                   .has_stops = attribute_is(source->include, "limits", "stops"),
-                                   .sticks = attribute_is(source->include, "friction", "sticks"),
-                                   .is_effort_limited = attribute_is(source->include, "effort", "limited"),
-                                   .has_ground = ground != NULL && strcmp(ground, "false") != 0,
-                                   .says_ground = ground != NULL,
-                                   .says_limits = has_attribute(source->include, "limits"),
-                                   .says_effort = has_attribute(source->include, "effort"),
-                                   .ground_contact = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
-                                   .keyframe = attribute(source->include, "keyframe"),
-                                   .tool = attribute(source->include, "tool")};
+    struct RobotOptions options = robot_options_of(texts);
     known->document = load_system(source, &options, &local);
     reader->diagnostics->errors += local.errors;
     names_set(reader->includes->documents, key, known);

@@ -8,6 +8,8 @@
 struct ReaderOptions {
   const char *const *definitions; /* "name=value", replacing <constant> elements */
   size_t definition_count;
+  const char *const *robot; /* "word=value", options for the file of a robot */
+  size_t robot_count;
   const char *solver;       /* method that replaces the system's own; NULL for none */
   const char *const *point; /* "name=value" of the linearization point; may be empty */
   size_t point_count;

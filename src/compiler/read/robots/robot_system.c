@@ -207,13 +207,14 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
 }
 
 /* Reports a robot without movable joints, or a floating one without mass. */
-static void check_motion(const struct Robot *robot, bool floats, struct Diagnostics *diagnostics) {
+static void check_motion(const struct Robot *robot, bool floats, bool is_mjcf, struct Diagnostics *diagnostics) {
   bool moves = floats;
   for (size_t i = 0; i < robot->joint_count && !moves; i++) moves = joint_moves(robot->joints[i]);
   if (!moves)
-    report_error(
-        diagnostics, robot->line,
-        "no joint of the robot moves; expected one of another type than fixed, or base=\"floating\" in an <include>");
+    report_error(diagnostics, robot->line,
+                 "no joint of the robot moves; expected one of another type than fixed, or %s",
+                 is_mjcf ? "a <freejoint> in a body"
+                         : "base=\"floating\" in an <include>, or --base floating on the command line");
   else if (floats && !robot->root->moves_inertia)
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
 }
@@ -231,12 +232,14 @@ static void count_one(struct PropertyCount *common, const char *kind, const char
 
 /* Warns of limits in the file if the <include> does not say how to treat them. */
 static void warn_of_limits(const struct Diagnostics *diagnostics, const struct PropertyCount *common, bool is_said,
-                           const char *what, const char *attribute) {
+                           const char *what, const char *attribute, const char *option) {
   if (is_said || common->count == 0) return;
   size_t others = common->count - 1;
   const char *and = others > 0 ? format_text(" and of %zu other%s", others, others > 1 ? "s" : "") : "";
-  report_warning(diagnostics, common->line, "%s of the %s '%s'%s; expected %s in an <include>", what, common->kind,
-                 common->name, and, attribute);
+  report_warning(diagnostics, common->line,
+                 "%s of the %s '%s'%s; expected %s in an <include>, or --%s on the "
+                 "command line",
+                 what, common->kind, common->name, and, attribute, option);
 }
 
 static void check_limits(const struct Robot *robot, const struct RobotOptions *options,
@@ -251,9 +254,9 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
   for (size_t i = 0; i < robot->tendon_count; i++)
     if (!isnan(robot->tendons[i].lower)) count_one(&ranges, "tendon", robot->tendons[i].name, robot->tendons[i].line);
   warn_of_limits(diagnostics, &ranges, options->says_limits, "motion is not stopped at the limits",
-                 "limits=\"stops\", or \"outputs\" if this is meant,");
+                 "limits=\"stops\", or \"outputs\" if this is meant,", "limits stops");
   warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may exceed the effort",
-                 "effort=\"limited\", or \"unlimited\" if this is meant,");
+                 "effort=\"limited\", or \"unlimited\" if this is meant,", "effort limited");
 }
 
 /* Warns of a cylinder on the ground, which touches with points on its rims and so rolls like an octagon. */
@@ -297,11 +300,11 @@ static void check_ground_contact(const struct Robot *robot, const struct RobotOp
 xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
   xmlNodePtr root = xmlDocGetRootElement(document);
-  struct Robot *robot =
-      is_element(root, "mujoco") ? mjcf_read(root, options, diagnostics) : urdf_read(root, options, diagnostics);
+  bool is_mjcf = is_element(root, "mujoco");
+  struct Robot *robot = is_mjcf ? mjcf_read(root, options, diagnostics) : urdf_read(root, options, diagnostics);
   const struct RobotLink *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
-    check_motion(robot, options->floats, diagnostics);
+    check_motion(robot, options->floats, is_mjcf, diagnostics);
     check_ground_contact(robot, options, diagnostics);
     end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
   }

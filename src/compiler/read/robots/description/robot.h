@@ -4,6 +4,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/diagnostics.h"
 #include "read/robots/description/rigid_body.h"
 
 enum RobotJointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
@@ -149,7 +150,7 @@ struct RobotLoop {
   bool is_fixed;
 };
 
-/* Options of an <include> for robots. */
+/* Options of an <include>, or of the command line, for robots. */
 struct RobotOptions {
   bool floats;                                /* the root link moves freely; else it is fixed in the base */
   bool has_stops;                             /* limits are stops; else outputs report violations */
@@ -161,6 +162,19 @@ struct RobotOptions {
   const char *keyframe;                       /* name of the MJCF keyframe for start values; NULL for the default */
   const char *tool; /* link with outputs of its position and velocity; NULL for the only leaf */
 };
+
+/* The attributes of an <include> for these options. */
+enum RobotWord { BASE, TOOL, LIMITS, FRICTION, EFFORT, GROUND, KEYFRAME, ROBOT_WORDS };
+
+/* Returns the name of such an attribute. */
+const char *robot_word(size_t index);
+
+/* Returns the options for the values of these attributes, NULL for missing ones. */
+struct RobotOptions robot_options_of(const char *const texts[ROBOT_WORDS]);
+
+/* Sets the options from texts such as "base=floating". Returns false after reporting a wrong one. */
+bool robot_options_parse(const char *const *given, size_t count, struct RobotOptions *options,
+                         struct Diagnostics *diagnostics);
 
 /* A robot. After robot_connect() its links form a tree. */
 struct Robot {
