@@ -16,6 +16,7 @@
 #include "page/equation_lines.h"
 #include "program/program.h"
 #include "read/names/words.h"
+#include "read/robots/description/robot.h"
 #include "read/reader.h"
 #include "read/context/value_texts.h"
 #include "read/sensitivities.h"
@@ -153,10 +154,11 @@ static struct Equations *motion_with_sensitivities(struct Model *model, const st
 
 static int run(const struct Arguments *arguments) {
   struct Diagnostics diagnostics = {.file = arguments->system};
+  struct RobotOptions robot;
+  if (!robot_options_parse(arguments->robot, arguments->robot_count, &robot, &diagnostics)) return 1;
   struct ReaderOptions options = {.definitions = arguments->definitions,
                                   .definition_count = arguments->definition_count,
-                                  .robot = arguments->robot,
-                                  .robot_count = arguments->robot_count,
+                                  .robot = arguments->robot_count > 0 ? &robot : NULL,
                                   .solver = arguments->solver,
                                   .point = (const char *const *)arguments->point,
                                   .point_count = arguments->point_count,

@@ -227,7 +227,7 @@ def test_options_for_robots(command, tmp_path):
     assert "there is no link 'cub' for the ground; did you mean 'cube'?" in command("check", "cube.urdf", "--base", "floating", "--feet", "cub", cwd=tmp_path).stderr
     succeed(command("check", "cube.xml", "--keyframe", "up", cwd=tmp_path))
     assert "there is no <key> 'down'" in command("check", "cube.xml", "--keyframe", "down", cwd=tmp_path).stderr
-    assert "base=floating is for robots" in command("check", fmu.ROOT / "fmu" / "SimplePendulum", "--base", "floating", cwd=tmp_path).stderr
+    assert "--robot is for robots" in command("check", fmu.ROOT / "fmu" / "SimplePendulum", "--base", "floating", cwd=tmp_path).stderr
     assert "is an FMU; expected the file of a robot for base=floating" in command("run", fmu.archive("SimplePendulum"), "--base", "floating", cwd=tmp_path).stderr
 
 

@@ -163,14 +163,11 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
 /* Converts the document of a robot to that of a system. Returns NULL after reporting errors. */
 static xmlDocPtr system_by_options(xmlDocPtr document, const struct ReaderOptions *options,
                                    struct Diagnostics *diagnostics) {
-  struct RobotOptions of_robot;
-  bool is_right = robot_options_parse(options->robot, options->robot_count, &of_robot, diagnostics);
-  if (is_right && is_robot(document)) return system_of_robot(document, &of_robot, diagnostics);
-  if (is_right && options->robot_count > 0)
-    report_error(diagnostics, 0,
-                 "%s is for robots; expected a file that begins with <robot> or <mujoco>, or an <include> of it",
-                 options->robot[0]);
-  if (diagnostics->errors == 0) return document;
+  static const struct RobotOptions none;
+  if (is_robot(document))
+    return system_of_robot(document, options->robot != NULL ? options->robot : &none, diagnostics);
+  if (options->robot == NULL) return document;
+  report_error(diagnostics, 0, "--robot is for robots; expected a <robot> or <mujoco>");
   xmlFreeDoc(document);
   return NULL;
 }

@@ -227,9 +227,9 @@ static void write_free_friction(const struct Writer *writer, const struct RobotJ
   static const char *const turns[3] = {"omegaX", "omegaY", "omegaZ"};
   const char *name = joint->symbol, *link = joint->child->symbol;
   write_parameter(writer, format_text("%s_friction", name), joint->friction, "N",
-                  format_text("Coulomb friction of %s in each direction", name));
+                  format_text("Coulomb friction of %s", name));
   write_parameter(writer, format_text("%s_turning_friction", name), joint->friction, "N.m",
-                  format_text("Coulomb friction of %s about each axis", name));
+                  format_text("Coulomb friction of %s", name));
   xmlNodePtr force = writer->options->sticks ? NULL : write_element(writer, "force");
   xmlNodePtr torque = writer->options->sticks ? NULL : write_element(writer, "torque");
   for (int i = 0; i < 6; i++) {

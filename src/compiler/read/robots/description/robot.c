@@ -8,13 +8,13 @@
 static const struct {
   const char *name, *values[3];
 } words[ROBOT_WORDS] = {
-    [BASE] = {"base", {"fixed", "floating"}},
-    [TOOL] = {"tool", {NULL}},
-    [LIMITS] = {"limits", {"outputs", "stops"}},
-    [FRICTION] = {"friction", {"creeps", "sticks"}},
-    [EFFORT] = {"effort", {"unlimited", "limited"}},
-    [GROUND] = {"ground", {NULL}},
-    [KEYFRAME] = {"keyframe", {NULL}},
+    [BASE_WORD] = {"base", {"fixed", "floating"}},
+    [TOOL_WORD] = {"tool", {NULL}},
+    [LIMITS_WORD] = {"limits", {"outputs", "stops"}},
+    [FRICTION_WORD] = {"friction", {"creeps", "sticks"}},
+    [EFFORT_WORD] = {"effort", {"unlimited", "limited"}},
+    [GROUND_WORD] = {"ground", {NULL}},
+    [KEYFRAME_WORD] = {"keyframe", {NULL}},
 };
 
 const char *robot_word(size_t index) {
@@ -26,18 +26,18 @@ static bool says(const char *text, const char *value) {
 }
 
 struct RobotOptions robot_options_of(const char *const texts[ROBOT_WORDS]) {
-  const char *ground = texts[GROUND];
-  return (struct RobotOptions){.floats = says(texts[BASE], "floating"),
-                               .has_stops = says(texts[LIMITS], "stops"),
-                               .sticks = says(texts[FRICTION], "sticks"),
-                               .is_effort_limited = says(texts[EFFORT], "limited"),
+  const char *ground = texts[GROUND_WORD];
+  return (struct RobotOptions){.floats = says(texts[BASE_WORD], "floating"),
+                               .has_stops = says(texts[LIMITS_WORD], "stops"),
+                               .sticks = says(texts[FRICTION_WORD], "sticks"),
+                               .is_effort_limited = says(texts[EFFORT_WORD], "limited"),
                                .has_ground = ground != NULL && strcmp(ground, "false") != 0,
                                .says_ground = ground != NULL,
-                               .says_limits = texts[LIMITS] != NULL,
-                               .says_effort = texts[EFFORT] != NULL,
+                               .says_limits = texts[LIMITS_WORD] != NULL,
+                               .says_effort = texts[EFFORT_WORD] != NULL,
                                .ground_contact = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
-                               .keyframe = texts[KEYFRAME],
-                               .tool = texts[TOOL]};
+                               .keyframe = texts[KEYFRAME_WORD],
+                               .tool = texts[TOOL_WORD]};
 }
 
 /* Returns the word of "word=value"; ROBOT_WORDS for others. */

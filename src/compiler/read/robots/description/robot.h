@@ -164,7 +164,16 @@ struct RobotOptions {
 };
 
 /* The attributes of an <include> for these options. */
-enum RobotWord { BASE, TOOL, LIMITS, FRICTION, EFFORT, GROUND, KEYFRAME, ROBOT_WORDS };
+enum RobotWord {
+  BASE_WORD,
+  TOOL_WORD,
+  LIMITS_WORD,
+  FRICTION_WORD,
+  EFFORT_WORD,
+  GROUND_WORD,
+  KEYFRAME_WORD,
+  ROBOT_WORDS
+};
 
 /* Returns the name of such an attribute. */
 const char *robot_word(size_t index);
