@@ -62,8 +62,7 @@ static bool sticks_on(const struct Resolution *resolution, size_t contact) {
 
 /* Returns the rounding error bound of the acceleration; a larger one for a contact whose force has just vanished. */
 static double error_bound_of_acceleration(const struct Resolution *resolution, size_t contact) {
-  size_t indicator = contact_indicator(resolution->switches, contact);
-  bool parts = is_hit(resolution, indicator) && resolution->was_opened[contact] != 0.0;
+  bool parts = resolution->was_opened[contact] != 0.0;
   double error_bound = resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
   return (parts ? parting_in_error_bound : 1.0) * error_bound;
 }
@@ -217,17 +216,25 @@ static bool create_resting(struct Resolution *resolution, struct RestingContacts
   return true;
 }
 
+static double largest_contact_force(const struct Resolution *resolution) {
+  double largest = 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (contact_is_closed(resolution, i)) largest = fmax(largest, fabs(contact_force(resolution, i)));
+  return largest;
+}
+
 /*
  * Returns the open contact at rest with the largest closing acceleration beyond rounding, such as one opened too early;
  * contact_count if there is none.
  */
 static size_t find_sinking(const struct Resolution *resolution, const struct RestingContacts *resting) {
-  double rounding = rounded_acceleration * largest_free_acceleration(&resting->forces), most = 0.0;
+  double free = largest_free_acceleration(&resting->forces), force = largest_contact_force(resolution), most = 0.0;
   size_t found = resolution->switches->contact_count;
   for (size_t i = 0; i < resting->forces.count; i++) {
     size_t contact = resting->impulses.member[i];
     double acceleration = contact_value(resolution, contact, CONTACT_ACCELERATION);
-    double least = error_bound_of_acceleration(resolution, contact) + rounding / resting->unit[i];
+    double unit = resting->unit[i], rounding = rounded_acceleration * fmax(free / unit, force / (unit * unit));
+    double least = error_bound_of_acceleration(resolution, contact) + rounding;
     if (contact_is_closed(resolution, contact) || !(acceleration < -least) || acceleration >= most) continue;
     most = acceleration;
     found = contact;

@@ -153,8 +153,10 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
   size_t values = resolution_value_count(switches), contacts = 0, frictions = 0;
   for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(resolution, i) ? 1 : 0;
   for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(resolution, i) ? 1 : 0;
-  *impulses =
-      (struct ContactImpulses){.contact_count = contacts, .friction_count = frictions, .count = contacts + frictions};
+  *impulses = (struct ContactImpulses){.contact_count = contacts,
+                                       .friction_count = frictions,
+                                       .count = contacts + frictions,
+                                       .deciding_count = contacts};
   size_t count = impulses->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
   size_t scratch = rows + 2 * n + values;
   impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES,

@@ -4,12 +4,13 @@
  *   contact:   u >= 0,  p >= 0,  u p = 0,
  *   friction:  |p| <= mu p_contact,  and  p = -mu p_contact u / |u|  where u is not 0.
  *
- * Projected block Gauss-Seidel sweeps come near a solution: each impulse in turn is projected with the others
- * fixed. From there a semismooth Newton method is tried (cone_newton.c). A trial that does not converge continues
- * the sweeps, LAW_SWEEPS more than the last time, underrelaxed in the second half. The best trial counts. It ends
- * when the residual is small enough, after LAW_TRIALS at the latest. A sweep costs O(n^2). With friction
- * convergence is not guaranteed: the search fails if the best residual is larger than law_roughly_holds and than
- * the rounding error of the rates.
+ * Projected block Gauss-Seidel sweeps come near a solution: each impulse in turn is projected with the others fixed.
+ * A sweep costs O(n^2). From there a semismooth Newton method is tried (cone_newton.c). A trial that does not converge
+ * continues the sweeps, LAW_SWEEPS more than the last time. After LAW_TRIALS an interior-point method searches
+ * (cone_interior.c).
+ *
+ * The search fails if the best residual is larger than law_roughly_holds and than the rounding error of the rates.
+ * Where friction increases the force of a contact, there may be no solution.
  *
  * For plane_forces.c the same conditions hold between forces and accelerations at rest.
  */
@@ -22,81 +23,43 @@
 #include "contacts/impacts.h"
 #include "contacts/planes.h"
 #include "evaluation/services.h"
+#include "planes/cone_interior.h"
 #include "planes/cone_newton.h"
 
-/* Trials; those of them that must reach law_holds; those from each start in the search for other impulses. */
-enum { LAW_TRIALS = 40, STRICT_LAW_TRIALS = 4, OTHER_LAW_TRIALS = 2 };
+/* Trials; those from each start in the search for other impulses. */
+enum { LAW_TRIALS = 4, OTHER_LAW_TRIALS = 2 };
 
 /* Sweeps of the first trial, and how many more each further trial makes. */
 enum { LAW_SWEEPS = 10 };
 
-/* Relaxation factors of both halves of the trials: where friction presses a contact, full steps may oscillate. */
-static const double parts[] = {1.0, 0.3};
-
 /*
- * Residuals relative to the largest impulse, as rates. law_holds ends the first trials. Rounding leaves up to
- * law_nearly_holds where sticking frictions are at their limits or impulses are small beside rates; it ends the later
- * trials. law_roughly_holds is accepted after the last trial: convergence is slow where frictions at their limits are
- * about to slide.
+ * Residuals relative to the largest impulse, as rates. law_holds ends a search. Rounding leaves up to law_nearly_holds
+ * where sticking frictions are at their limits or impulses are small beside rates. law_roughly_holds is accepted at
+ * last.
  */
 static const double law_holds = 1e-12, law_nearly_holds = 1e-9, law_roughly_holds = 1e-5;
 
 /* Directions of the friction impulses at which the search for other impulses starts. */
 static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
 
-double cones_rate_behind(const struct Cones *cones, size_t row) {
-  const double *delassus = &cones->impulses->delassus[row * cones->impulses->count];
-  double rate = cones->rate[row];
-  for (size_t j = 0; j < cones->impulses->count; j++) rate += delassus[j] * cones->impulse[j];
-  return rate;
+static void update_contact_impulse(struct Cones *cones, size_t row) {
+  cones->impulse[row] = fmax(cones->impulse[row] - cones_rate_behind(cones, row) / cones->scale[row], 0.0);
 }
 
-double cones_limit(const struct Cones *cones, size_t row) {
-  size_t contacts = cones->impulses->contact_count;
-  double limit = 0.0;
-  for (size_t i = 0; i < contacts; i++)
-    limit += cones->impulses->coefficient[(row - contacts) * contacts + i] * cones->impulse[i];
-  return limit;
-}
-
-size_t cones_row_count(const struct Cones *cones, size_t row) {
-  const struct ContactImpulses *impulses = cones->impulses;
-  return row >= impulses->contact_count && is_in_plane(cones->resolution->switches, impulses->member[row]) ? 2 : 1;
-}
-
-double cones_largest(const struct Cones *cones) {
-  double largest = 0.0;
-  for (size_t i = 0; i < cones->impulses->count; i++)
-    largest = fmax(largest, fabs(cones->scale[i] * cones->impulse[i]));
-  return largest;
-}
-
-/* Returns the residual relative to the largest impulse; 0 if it is a rounding error of the rates. */
-static double share_of_miss(const struct Cones *cones, double miss) {
-  double fastest = 0.0;
-  for (size_t i = 0; i < cones->impulses->count; i++) fastest = fmax(fastest, fabs(cones->rate[i]));
-  return miss > DBL_EPSILON * fastest ? miss / cones_largest(cones) : 0.0;
-}
-
-static void update_contact_impulse(struct Cones *cones, size_t row, double part) {
-  double whole = fmax(cones->impulse[row] - cones_rate_behind(cones, row) / cones->scale[row], 0.0);
-  cones->impulse[row] += part * (whole - cones->impulse[row]);
-}
-
-static void update_friction_impulse(struct Cones *cones, size_t row, size_t rows, double part) {
+static void update_friction_impulse(struct Cones *cones, size_t row, size_t rows) {
   double whole[2] = {0.0, 0.0}, limit = fmax(cones_limit(cones, row), 0.0);
   if (!(cones->scale[row] > 0.0)) return;
   for (size_t i = 0; i < rows; i++)
     whole[i] = cones->impulse[row + i] - cones_rate_behind(cones, row + i) / cones->scale[row];
   double size = hypot(whole[0], whole[1]), share = size > limit ? limit / size : 1.0;
-  for (size_t i = 0; i < rows; i++) cones->impulse[row + i] += part * (share * whole[i] - cones->impulse[row + i]);
+  for (size_t i = 0; i < rows; i++) cones->impulse[row + i] = share * whole[i];
 }
 
-static void sweep_contacts(struct Cones *cones, double part) {
+static void sweep_contacts(struct Cones *cones) {
   for (size_t row = 0; row < cones->impulses->count;) {
     size_t rows = cones_row_count(cones, row);
-    if (row < cones->impulses->contact_count) update_contact_impulse(cones, row, part);
-    else update_friction_impulse(cones, row, rows, part);
+    if (row < cones->impulses->contact_count) update_contact_impulse(cones, row);
+    else update_friction_impulse(cones, row, rows);
     row += rows;
   }
 }
@@ -128,15 +91,14 @@ static bool fill_scales(struct Cones *cones) {
  */
 static double come_to_law(struct Cones *cones, int trials, double *best, double *swept, double *work) {
   size_t bytes = cones->impulses->count * sizeof(double);
-  double least = INFINITY, enough = law_holds;
-  for (int trial = 0; trial < trials && !(least <= enough); trial++) {
+  double least = INFINITY;
+  for (int trial = 0; trial < trials && !(least <= law_holds); trial++) {
     memcpy(cones->impulse, swept, bytes);
-    for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep_contacts(cones, parts[2 * trial / LAW_TRIALS]);
+    for (int count = 0; count < LAW_SWEEPS * (trial + 1); count++) sweep_contacts(cones);
     memcpy(swept, cones->impulse, bytes);
-    double miss = share_of_miss(cones, cone_newton(cones, work));
+    double miss = cones_relative_miss(cones, cone_newton(cones, work));
     if (miss < least) memcpy(best, cones->impulse, bytes);
     least = fmin(least, miss);
-    if (trial + 1 >= STRICT_LAW_TRIALS) enough = law_nearly_holds;
   }
   memcpy(cones->impulse, best, bytes);
   return least;
@@ -147,7 +109,7 @@ static double *create_cones(const struct Resolution *resolution, const struct Co
                             const double *rate, double *impulse, struct Cones *cones) {
   struct Instance *instance = resolution->instance;
   size_t n = impulses->count;
-  double *block = scratch_take(instance, SCRATCH_CONES, (4 * n + cone_newton_work_count(n)) * sizeof *block);
+  double *block = scratch_take(instance, SCRATCH_CONES, (4 * n + cone_interior_work_count(n)) * sizeof *block);
   *cones = (struct Cones){.resolution = resolution, .impulses = impulses, .rate = rate, .scale = block};
   if (block == NULL) {
     solver_is_out_of_memory(instance);
@@ -157,10 +119,19 @@ static double *create_cones(const struct Resolution *resolution, const struct Co
   return block + 2 * n;
 }
 
-/* Finds impulses whose residual is small, or a rounding error of velocities, as in the slowest impacts. */
+/* True if the residual is small, or a rounding error of velocities, as in the slowest impacts. */
+static bool is_accepted(struct Cones *cones, double miss, double *work) {
+  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->impulses->rounding;
+}
+
+/* Finds impulses by sweeps; by an interior path if these do not converge. */
 static bool fulfil_law(struct Cones *cones, double *best, double *swept, double *work) {
   double miss = come_to_law(cones, LAW_TRIALS, best, swept, work);
-  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->impulses->rounding;
+  if (miss <= law_holds) return true;
+  memcpy(best, cones->impulse, cones->impulses->count * sizeof *best);
+  double other = cone_interior(cones, law_holds, false, work);
+  if (!(other < miss)) memcpy(cones->impulse, best, cones->impulses->count * sizeof *best);
+  return is_accepted(cones, fmin(other, miss), work);
 }
 
 bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
@@ -170,6 +141,16 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
   double *work = create_cones(resolution, impulses, rate, impulse, &cones);
   if (work == NULL) return false;
   bool is_done = fill_scales(&cones) && fulfil_law(&cones, work, work + n, work + 2 * n);
+  scratch_return(resolution->instance, SCRATCH_CONES);
+  return is_done;
+}
+
+bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
+                      double *force) {
+  struct Cones cones;
+  double *work = create_cones(resolution, impulses, rate, force, &cones);
+  if (work == NULL) return false;
+  bool is_done = fill_scales(&cones) && cone_interior(&cones, law_holds, true, work) <= law_roughly_holds;
   scratch_return(resolution->instance, SCRATCH_CONES);
   return is_done;
 }

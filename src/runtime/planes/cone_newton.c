@@ -73,8 +73,6 @@ static void fill_law_of_contact(const struct ConeNewton *newton, size_t row) {
 static void fill_sliding(const struct ConeNewton *newton, size_t row, size_t rows, const double *wish, double size,
                          double limit) {
   const struct Cones *cones = newton->cones;
-  size_t contacts = cones->impulses->contact_count;
-  const double *coefficient = &cones->impulses->coefficient[(row - contacts) * contacts];
   double scale = cones->scale[row], share = limit * scale / size;
   for (size_t j = 0; j < newton->n; j++) {
     double turn[2], along = 0.0;
@@ -82,7 +80,8 @@ static void fill_sliding(const struct ConeNewton *newton, size_t row, size_t row
       turn[i] = (j == row + i ? 1.0 : 0.0) - slope_row(newton, row + i)[j];
       along += turn[i] * wish[i] / size;
     }
-    double grows = j < contacts && limit > 0.0 ? coefficient[j] * scale / cones->scale[j] : 0.0;
+    bool decides = j < cones->impulses->deciding_count && limit > 0.0 && cones->scale[j] > 0.0;
+    double grows = decides ? cones_coefficient(cones, row, j) * scale / cones->scale[j] : 0.0;
     for (size_t i = 0; i < rows; i++) {
       double across = turn[i] - along * wish[i] / size;
       slope_row(newton, row + i)[j] = (j == row + i ? 1.0 : 0.0) - grows * wish[i] / size - share * across;

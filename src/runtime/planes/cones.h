@@ -16,7 +16,10 @@ struct Cones {
 /* Returns rate + W impulse of a row, the quantity that is complementary to the impulse of a contact. */
 double cones_rate_behind(const struct Cones *cones, size_t row);
 
-/* Returns the friction limit of a row by the impulses of the contacts. */
+/* Returns the friction limit of a row by a unit impulse of a row that decides on limits. */
+double cones_coefficient(const struct Cones *cones, size_t row, size_t deciding);
+
+/* Returns the friction limit of a row. */
 double cones_limit(const struct Cones *cones, size_t row);
 
 /* Returns the number of rows of the impulse at a row: 2 for a friction in a plane. */
@@ -24,5 +27,8 @@ size_t cones_row_count(const struct Cones *cones, size_t row);
 
 /* Returns the largest impulse, as the rate that it makes alone. */
 double cones_largest(const struct Cones *cones);
+
+/* Returns a residual relative to the largest impulse; 0 if it is a rounding error of the rates. */
+double cones_relative_miss(const struct Cones *cones, double miss);
 
 #endif

@@ -167,8 +167,7 @@ static bool find_plane_forces(struct PlaneForces *forces) {
   forces->behind = block + 2 * n;
   fill_rates_of_planes(forces);
   join_sliding(forces);
-  forces->impulses.rounding = 0.0; /* its unit is that of velocities, not of accelerations */
-  bool is_done = cone_impulses_find(resolution, &forces->impulses, forces->rate, forces->force);
+  bool is_done = cone_forces_find(resolution, &forces->impulses, forces->rate, forces->force);
   if (is_done) {
     double none = least_force_share * fill_behind(forces);
     set_contacts(forces, none);

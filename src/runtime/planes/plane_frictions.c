@@ -1,13 +1,14 @@
 /*
  * Coulomb friction in planes. While it slides its force is kinetic, against the velocity u; while it sticks its force
  * is |f| <= stiction. The zero u = 0 of a velocity in a plane cannot be located by a sign. Therefore a friction is
- * tried to stick once its speed falls to a small value that depends on the tolerance (plane_stops.c). Beyond its
- * stiction it slips along a direction d (plane_starts.c), with the force against d, until the velocity moves away from
- * d; then it slides again. Sticking frictions share a load that does not determine their forces (plane_loads.c).
+ * tried to stick once its speed falls to a small value that depends on the tolerance. Beyond its stiction it slips
+ * along a direction d, with the force against d, until the velocity moves away from d; then it slides again.
+ * plane_rests.c finds at once which of the frictions at rest stick, and along which directions the others slip.
  *
  * Each round makes one change, or one to each of several frictions. A friction may switch more than TOGETHER_LIMIT
- * times, or stops or directions may not be found. Then all forces at rest are solved for at once (plane_forces.c),
- * at most once in an event resolution. Beyond FRICTION_FLIP_LIMIT switches the motion ends with a message.
+ * times, or no forces may be found while the contacts stay closed. Then the forces of contacts and frictions are solved
+ * for together (plane_forces.c), at most once in an event resolution. Beyond FRICTION_FLIP_LIMIT switches the motion
+ * ends with a message.
  */
 #include <math.h>
 #include <string.h>
@@ -17,9 +18,13 @@
 #include "evaluation/evaluate.h"
 #include "planes/cone_impulses.h"
 #include "planes/plane_forces.h"
-#include "planes/plane_loads.h"
-#include "planes/plane_starts.h"
-#include "planes/plane_stops.h"
+#include "planes/plane_rests.h"
+
+/*
+ * In rounding errors of the last solution: accelerations off the slip direction that count as 0. plane_rests.c lets
+ * frictions slip within a margin of 100 rounding errors to their limit.
+ */
+static const double in_rounding_error = 200.0;
 
 /* Switches of one friction after which all forces at rest are solved for at once. */
 enum { TOGETHER_LIMIT = 20 };
@@ -29,13 +34,13 @@ static const char *reject_directions(const struct Resolution *resolution) {
   return "the slip directions of frictions in a plane cannot be found";
 }
 
-/* True if a sliding friction has to be tried to stick. */
-static bool is_stopping(const struct Resolution *resolution, const struct PlaneState *state) {
-  bool has_slowed = state->has_slowed && state->is_first;
-  if (state->mode == PLANE_STICKS || !plane_is_slow(resolution, state)) return false;
-  if (resolution->occasion == AT_START && state->is_first) return true;
-  if (state->mode == PLANE_SLIDES) return state->speed <= state->lower || has_slowed || state->has_reversed;
-  return state->mode == PLANE_SLIPS && (state->ahead <= -state->lower || has_slowed);
+/*
+ * Finds the modes of all that is at rest from all its forces at once. False if there are none, or it was done before.
+ */
+static bool resolve_together(struct Resolution *resolution) {
+  if (resolution->has_found_forces) return false;
+  resolution->has_found_forces = true;
+  return plane_forces_resolve(resolution);
 }
 
 /* True if a sliding friction needs other bounds on its speed, or another slip direction. */
@@ -48,22 +53,24 @@ static bool is_sliding_otherwise(const struct Resolution *resolution, const stru
   return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
 }
 
-/* True if a sticking friction needs more than its stiction. */
-static bool is_overcome(const struct Resolution *resolution, const struct PlaneState *state) {
-  bool is_reached = state->has_slowed && state->is_first && !resolution->jumped;
-  return state->mode == PLANE_STICKS && (state->needed > state->stiction || is_reached);
-}
-
-/*
- * Lets a sticking friction slide if it moves, as after an impact, or if it needs more than its stiction. True if it
- * does.
- */
+/* Lets a sticking friction slide that moves, as after an impact. True if it does. */
 static bool leave_rest(struct Resolution *resolution, const struct PlaneState *state) {
-  if (!(state->speed > state->small || is_overcome(resolution, state))) return false;
-  if (plane_moves(state)) plane_slide(resolution, state);
-  else plane_slip(resolution, state, state->force);
+  if (!(state->speed > state->small)) return false;
+  plane_slide(resolution, state);
   plane_count_switch(resolution, state);
   return true;
+}
+
+/* True if a friction that begins to slide does not accelerate along its direction. */
+static bool slips_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
+  if (state->mode != PLANE_SLIPS || state->speed > state->upper || plane_moves(state)) return false;
+  size_t slot = friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE);
+  double c = mode_of(resolution, state->metadata->slip_direction[0]),
+         s = mode_of(resolution, state->metadata->slip_direction[1]);
+  double ahead = c * state->rate[0] + s * state->rate[1], aside = c * state->rate[1] - s * state->rate[0];
+  double bound = fmax(in_rounding_error * resolution->least_acceleration,
+                      resolution->error_bound[slot] + resolution->error_bound[slot + FRICTION_VALUES]);
+  return ahead < -bound || fabs(aside) > bound;
 }
 
 /* True if a prescribed velocity leaves rest, or passes through it. */
@@ -82,7 +89,7 @@ static bool follow_given(struct Resolution *resolution, const struct PlaneState 
     if (plane_moves(state)) plane_slide(resolution, state);
     else plane_slip(resolution, state, state->rate);
   } else {
-    if (!is_stopping(resolution, state) && !is_sliding_otherwise(resolution, state)) return false;
+    if (!plane_is_stopping(resolution, state) && !is_sliding_otherwise(resolution, state)) return false;
     if (plane_moves(state)) plane_slide(resolution, state);
     else plane_stick(resolution, state);
   }
@@ -90,7 +97,7 @@ static bool follow_given(struct Resolution *resolution, const struct PlaneState 
   return true;
 }
 
-/* Handles a friction whose force vanishes, or acts again. True if its mode changes. */
+/* Handles a friction that loses its force, or has one again. True if its mode changes. */
 static bool change_force(struct Resolution *resolution, const struct PlaneState *state) {
   if (state->is_free != state->has_force) return false;
   if (!state->has_force) plane_free(resolution, state);
@@ -108,37 +115,6 @@ static bool change_slide(struct Resolution *resolution, const struct PlaneState 
   return true;
 }
 
-/*
- * Sets modes from the forces of all at once, once an event resolution. False if there are none, or it was done before.
- */
-static bool resolve_together(struct Resolution *resolution) {
-  if (resolution->has_found_forces) return false;
-  resolution->has_found_forces = true;
-  return plane_forces_resolve(resolution);
-}
-
-/*
- * Finds the slip directions of frictions that begin to slide; sets *again if any turns, or sticks because it
- * accelerates along none. Returns NULL, or the reason why the motion cannot continue.
- */
-static const char *act_on_slips(struct Resolution *resolution, bool *again) {
-  bool slips = false;
-  size_t stays = resolution->switches->plane_count;
-  for (size_t i = 0; i < resolution->switches->plane_count; i++)
-    slips |= plane_state(resolution, i).mode == PLANE_SLIPS;
-  if (!slips) return NULL;
-  if (!plane_slip_directions_find(resolution, again, &stays)) {
-    *again = true;
-    return resolve_together(resolution) ? NULL : reject_directions(resolution);
-  }
-  if (stays == resolution->switches->plane_count) return NULL;
-  *again = true;
-  struct PlaneState state = plane_state(resolution, stays);
-  plane_stick(resolution, &state);
-  plane_count_switch(resolution, &state);
-  return NULL;
-}
-
 /* Returns a friction in a plane that has switched more often than the given number; friction_count for none. */
 static size_t find_flipping(const struct Resolution *resolution, double often) {
   const struct SwitchTable *switches = resolution->switches;
@@ -148,34 +124,22 @@ static size_t find_flipping(const struct Resolution *resolution, double often) {
   return switches->friction_count;
 }
 
-/* Lets frictions at rest share the load of one that exceeds its stiction. True if one does. */
-static bool share_loads(struct Resolution *resolution) {
-  bool shares = false;
-  for (size_t i = 0; i < resolution->switches->plane_count && !shares; i++) {
-    struct PlaneState state = plane_state(resolution, i);
-    bool rests = state.has_force && !state.is_given && !(state.speed > state.small);
-    shares = rests && is_overcome(resolution, &state) && plane_loads_share(resolution, i);
-  }
-  return shares;
-}
-
 static const char *act_on_planes(struct Resolution *resolution, bool *again) {
-  bool stops = false;
-  *again = share_loads(resolution);
-  if (*again) return NULL;
+  bool resolves = false;
+  *again = false;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     if (state.is_free || !state.has_force) *again |= change_force(resolution, &state);
     else if (state.is_given) *again |= follow_given(resolution, &state);
-    else if (is_stopping(resolution, &state)) stops = true;
-    else *again |= state.mode == PLANE_STICKS ? leave_rest(resolution, &state) : change_slide(resolution, &state);
+    else if (state.mode == PLANE_STICKS && state.speed > state.small) *again |= leave_rest(resolution, &state);
+    else if (plane_is_stopping(resolution, &state) || plane_is_overcome(resolution, &state) ||
+             slips_otherwise(resolution, &state))
+      resolves = true;
+    else if (state.mode != PLANE_STICKS) *again |= change_slide(resolution, &state);
   }
-  if (*again) return NULL;
-  if (stops) {
-    *again = true;
-    return planes_stop(resolution) || resolve_together(resolution) ? NULL : reject_directions(resolution);
-  }
-  return act_on_slips(resolution, again);
+  if (*again || !resolves) return NULL;
+  *again = true;
+  return plane_rests_find(resolution) || resolve_together(resolution) ? NULL : reject_directions(resolution);
 }
 
 static const char *act(struct Resolution *resolution, bool *again) {
