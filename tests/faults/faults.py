@@ -434,7 +434,7 @@ PLANS = [
     ("state.needed = hypot(state.force[0], state.force[1]);", "state.needed = fmax(fabs(state.force[0]), fabs(state.force[1]));",
      pytest("test_friction_in_a_plane", "comes_to_rest")),
     ("slow_share = 10.0;", "slow_share = 1.0;", pytest("test_friction_in_a_plane", "ends_to_slide")),
-    ("return act_on_slips(resolution, again);", "return false ? act_on_slips(resolution, again) : NULL;",
+    ("has_force ? against : &rests->behind[row]);", "has_force ? force : &rests->behind[row]);",
      pytest("test_friction_in_a_plane", "opposite_to_the_acceleration")),
     ("share = size > limit ? limit / size : 1.0;", "share = size > limit ? fmin(1.0, limit / fmax(fabs(along), fabs(across))) : 1.0;",
      pytest("test_friction_in_a_plane", "bounce_with_spin")),
@@ -458,7 +458,7 @@ EQUIVALENT = [
      "half is then below half the length, so that the window shrinks all the same, and ends when it is sure"),
     ("if (near_secant * far_secant <= 0 && fabs(slope) > 3 * fabs(near_secant)) return", "if (fabs(slope) > 3 * fabs(near_secant)) return",
      "of two secants of one sign the parabola's slope at the end is less than twice the nearer one"),
-    ("if (curve->count == 3 && i == 2) return (struct Row){1, 1, 0, 2 * secant(curve, 1)};", "",
+    ("if (curve->count == 3 && i == 2) return (struct SlopeEquation){1, 1, 0, 2 * secant(curve, 1)};", "",
      "the cubic that both intervals share is the parabola that the first row asks for"),
 ]
 
