@@ -211,7 +211,7 @@ def test_through_a_constraint_and_an_impact(lagrange_fmu):
         assert found.derivatives["x", name] == pytest.approx(change, rel=1e-6, abs=1e-7), name
 
 
-@pytest.mark.parametrize("times", [[], [1, 0], [0, 1, 1], [-1, 0], [0, math.nan], [math.inf]])
+@pytest.mark.parametrize("times", [[1, 0], [0, 1, 1], [-1, 0], [0, math.nan], [math.inf]])
 def test_times(lagrange_fmu, times):
     with pytest.raises(lagrange_fmu.Problem, match="expected one at least, from 0 s on"):
         lagrange_fmu.sensitivities(fmu.archive("Oscillator"), ["x"], ["k"], times)

@@ -243,7 +243,7 @@ def test_two_different_sweeps_to_one_file(tmp_path):
     """The second ends with a message, and the first is complete."""
     output = tmp_path / "x.parquet"
     words = ["SimplePendulum", "--vary", "theta=0:3", "--random", "1500", "--stop"]
-    first = subprocess.Popen(command(output, *words, "200"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    first = subprocess.Popen(command(output, *words, "1500"), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     while not output.with_suffix(".part").exists():
         assert first.poll() is None
         time.sleep(0.005)
