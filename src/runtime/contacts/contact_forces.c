@@ -11,9 +11,10 @@
  *
  * The problem is set up after the frictions have their modes. It is needed if a friction slides on a contact at
  * rest, or if a contact that its force has opened would close again. If no open contact approaches, the present
- * forces are a solution, and only their uniqueness is examined (resting_forces.c). If a friction begins to slide,
- * its direction would differ in another solution, and the problem is solved. Else the solution found sets the
- * contacts. If there is none, or more than one, or existence is unknown, the motion ends with a message.
+ * forces are a solution, and only their uniqueness is examined (resting_forces.c). It is not examined while a
+ * friction begins to slide, since its direction would differ in another solution. If an open contact approaches, the
+ * solution found sets the contacts. If there is none, or more than one, or existence is unknown, the motion ends with
+ * a message.
  */
 #include "contacts/contact_forces.h"
 
@@ -31,7 +32,10 @@
  */
 static const double parting_in_error_bound = 1e3;
 
-/* Rounding error of an acceleration that other contacts keep at 0, as a share of the largest free acceleration. */
+/*
+ * Rounding error of an acceleration that other contacts keep at 0. It is a share of the largest free acceleration, or
+ * of that by the largest contact force.
+ */
 static const double rounded_acceleration = 1e-12;
 
 /* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
@@ -214,13 +218,6 @@ static bool create_resting(struct Resolution *resolution, struct RestingContacts
   resting->forces = resting_forces_in(resting->unit + n, n);
   fill_resting(resolution, resting);
   return true;
-}
-
-static double largest_contact_force(const struct Resolution *resolution) {
-  double largest = 0.0;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    if (contact_is_closed(resolution, i)) largest = fmax(largest, fabs(contact_force(resolution, i)));
-  return largest;
 }
 
 /*

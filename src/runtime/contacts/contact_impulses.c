@@ -48,6 +48,13 @@ bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double 
   return rate * rate <= 2.0 * fall * fmax(lost, lost_height(resolution));
 }
 
+double largest_contact_force(const struct Resolution *resolution) {
+  double largest = 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (contact_is_closed(resolution, i)) largest = fmax(largest, fabs(contact_force(resolution, i)));
+  return largest;
+}
+
 void set_friction(struct Resolution *resolution, size_t friction, double mode) {
   const struct SwitchTable *switches = resolution->switches;
   size_t plane = plane_of(switches, friction);

@@ -50,6 +50,9 @@ static inline double contact_force(const struct Resolution *resolution, size_t c
   return resolution->acceleration[lagrangian.coordinate_count + constraint];
 }
 
+/* Returns the largest size of the forces of closed contacts. */
+double largest_contact_force(const struct Resolution *resolution);
+
 /* True if the friction sticks in the present modes. */
 static inline bool friction_sticks(const struct Resolution *resolution, size_t friction) {
   return friction_holds(resolution->instance, friction);

@@ -59,9 +59,7 @@ static void close_idle(struct Resolution *resolution) {
 /* Returns the contact with the least force, of those that were closed here and do not press; contact_count for none. */
 static size_t find_useless(const struct Resolution *resolution) {
   size_t count = resolution->switches->contact_count, found = count;
-  double largest = 0.0, least = INFINITY;
-  for (size_t i = 0; i < count; i++)
-    if (contact_is_closed(resolution, i)) largest = fmax(largest, fabs(contact_force(resolution, i)));
+  double largest = largest_contact_force(resolution), least = INFINITY;
   for (size_t i = 0; i < count; i++) {
     double force = contact_force(resolution, i);
     if (resolution->takes_part[i] == 0.0 || force > rounded_force * largest || force >= least) continue;

@@ -10,7 +10,7 @@
  * (cone_interior.c).
  *
  * The search fails if the best residual is larger than law_roughly_holds and than the rounding error of the rates.
- * Where friction increases the force of a contact, there may be no solution.
+ * Friction that presses a contact together may leave no solution (Painleve's paradox).
  *
  * For plane_forces.c the same conditions hold between forces and accelerations at rest.
  */

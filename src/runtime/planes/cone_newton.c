@@ -17,8 +17,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "planes/pivoting.h"
-
 /* Largest number of Newton steps; a few suffice once the active pieces are right. */
 enum { NEWTON_LIMIT = 60 };
 
@@ -116,17 +114,38 @@ static double fill_equations(const struct ConeNewton *newton) {
   return most;
 }
 
+static void exchange(double *one, double *other) {
+  double number = *one;
+  *one = *other;
+  *other = number;
+}
+
+/*
+ * Exchanges the largest element of the slope from row and column k on with that at (k, k), and the residuals of the
+ * rows. Returns the size of the element. column: the original index of each column.
+ */
+static double take_pivot(const struct ConeNewton *newton, size_t k) {
+  size_t n = newton->n, row = k, column = k;
+  for (size_t i = k; i < n; i++)
+    for (size_t j = k; j < n; j++)
+      if (fabs(slope_row(newton, i)[j]) > fabs(slope_row(newton, row)[column])) {
+        row = i;
+        column = j;
+      }
+  for (size_t j = 0; j < n && row != k; j++) exchange(&slope_row(newton, row)[j], &slope_row(newton, k)[j]);
+  for (size_t i = 0; i < n && column != k; i++) exchange(&slope_row(newton, i)[column], &slope_row(newton, i)[k]);
+  exchange(&newton->column[column], &newton->column[k]);
+  exchange(&newton->miss[row], &newton->miss[k]);
+  return fabs(slope_row(newton, k)[k]);
+}
+
 /* Finds the Newton step by elimination with complete pivoting; components that are not determined are 0. */
 static void find_step(const struct ConeNewton *newton) {
   size_t n = newton->n, rank = 0;
   double largest = 0.0;
-  const struct Pivoting pivoting = {.rows = n, .columns = n, .matrix = newton->slope, .order = newton->column};
-  pivoting_begin(&pivoting);
+  for (size_t j = 0; j < n; j++) newton->column[j] = (double)j;
   for (; rank < n; rank++) {
-    size_t taken;
-    double pivot = pivoting_take(&pivoting, rank, &taken), miss = newton->miss[taken];
-    newton->miss[taken] = newton->miss[rank];
-    newton->miss[rank] = miss;
+    double pivot = take_pivot(newton, rank);
     largest = fmax(largest, pivot);
     if (!(pivot > least_law_pivot * largest)) break;
     const double *first = slope_row(newton, rank);

@@ -10,6 +10,22 @@ double cones_rate_behind(const struct Cones *cones, size_t row) {
   return rate;
 }
 
+double fill_rates_behind(const struct ContactImpulses *impulses, const double *rate, const double *impulse,
+                         double *behind) {
+  size_t n = impulses->count;
+  double largest = 0.0;
+  for (size_t i = 0; i < n; i++) {
+    behind[i] = rate[i];
+    largest = fmax(largest, fabs(rate[i]));
+    for (size_t j = 0; j < n; j++) {
+      double term = impulses->delassus[i * n + j] * impulse[j];
+      behind[i] += term;
+      largest = fmax(largest, fabs(term));
+    }
+  }
+  return largest;
+}
+
 double cones_coefficient(const struct Cones *cones, size_t row, size_t deciding) {
   const struct ContactImpulses *impulses = cones->impulses;
   return impulses->coefficient[(row - impulses->contact_count) * impulses->deciding_count + deciding];

@@ -16,6 +16,10 @@ struct Cones {
 /* Returns rate + W impulse of a row, the quantity that is complementary to the impulse of a contact. */
 double cones_rate_behind(const struct Cones *cones, size_t row);
 
+/* Fills rate + W impulse of all rows. Returns the size of the largest term in them. */
+double fill_rates_behind(const struct ContactImpulses *impulses, const double *rate, const double *impulse,
+                         double *behind);
+
 /* Returns the friction limit of a row by a unit impulse of a row that decides on limits. */
 double cones_coefficient(const struct Cones *cones, size_t row, size_t deciding);
 

@@ -14,6 +14,7 @@
 #include "contacts/contact_impulses.h"
 #include "evaluation/services.h"
 #include "planes/cone_impulses.h"
+#include "planes/cones.h"
 
 /* Accelerations, also those by forces, are rounding errors below this share of the largest one. */
 static const double least_force_share = 1e-9;
@@ -105,22 +106,6 @@ static void fill_rates_of_planes(struct PlaneForces *forces) {
   }
 }
 
-/* Computes the accelerations with the forces. Returns the largest term in them. */
-static double fill_behind(struct PlaneForces *forces) {
-  size_t n = forces->impulses.count;
-  double largest = 0.0;
-  for (size_t i = 0; i < n; i++) {
-    forces->behind[i] = forces->rate[i];
-    largest = fmax(largest, fabs(forces->rate[i]));
-    for (size_t j = 0; j < n; j++) {
-      double part = forces->impulses.delassus[i * n + j] * forces->force[j];
-      forces->behind[i] += part;
-      largest = fmax(largest, fabs(part));
-    }
-  }
-  return largest;
-}
-
 /* Sets the contacts. A contact that neither presses nor opens keeps its mode: others may share its force. */
 static void set_contacts(struct PlaneForces *forces, double none) {
   struct Resolution *resolution = forces->resolution;
@@ -169,7 +154,7 @@ static bool find_plane_forces(struct PlaneForces *forces) {
   join_sliding(forces);
   bool is_done = cone_forces_find(resolution, &forces->impulses, forces->rate, forces->force);
   if (is_done) {
-    double none = least_force_share * fill_behind(forces);
+    double none = least_force_share * fill_rates_behind(&forces->impulses, forces->rate, forces->force, forces->behind);
     set_contacts(forces, none);
     set_planes(forces, none);
   }

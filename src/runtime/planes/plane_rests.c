@@ -8,8 +8,8 @@
  * With the contacts that are closed, a and the forces of the contacts, and so the limits, are linear functions of T.
  * They are read from the equations of motion: without T, and with one T after another.
  *
- * Where the supports are statically indeterminate, the constraints of what sticks have the forces of least norm. If
- * these exceed a limit, frictions stick with the forces T that were found, which have a margin to their limits.
+ * If the supports are statically indeterminate, the constraints of sticking frictions have the forces of least norm.
+ * If these exceed a limit, frictions stick with the forces T that were found, which have a margin to their limits.
  */
 #include "planes/plane_rests.h"
 
@@ -20,6 +20,7 @@
 #include "contacts/frictions.h"
 #include "evaluation/services.h"
 #include "planes/cone_impulses.h"
+#include "planes/cones.h"
 
 /* Relative to the largest acceleration: smaller ones are rounding errors. */
 static const double rounded_share = 1e-9;
@@ -54,7 +55,7 @@ struct PlaneRests {
   double *force, *behind;          /* T, and a with it */
   double *stiction, *given_stiction; /* derivatives of the stiction, and stiction without T */
   double *kinetic, *given_kinetic;   /* the same for the kinetic friction */
-  double *slips;                     /* 1 if the friction accelerates: its limit is the kinetic friction */
+  double *slips;                     /* 1 if the friction slips: its limit is the kinetic friction */
   double none;                       /* accelerations that count as 0 */
 };
 
@@ -84,10 +85,11 @@ static bool is_reached(const struct Resolution *resolution, const struct PlaneSt
 
 bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneState *state) {
   if (state->mode != PLANE_STICKS) return false;
-  bool is_exact =
-      resolution->occasion == IN_EXCHANGE; /* importers stop where it exceeds the stiction, however little */
-  double rounding = is_exact ? 0.0 : share_at_limit * largest_stiction(resolution);
-  return state->needed > state->stiction + rounding || is_reached(resolution, state);
+  if (is_reached(resolution, state)) return true;
+  if (!(state->needed > state->stiction)) return false;
+  /* Importers stop where it exceeds the stiction, however little. */
+  return resolution->occasion == IN_EXCHANGE ||
+         state->needed > state->stiction + share_at_limit * largest_stiction(resolution);
 }
 
 static bool any_stops(const struct Resolution *resolution) {
@@ -188,7 +190,7 @@ static bool create_rests(struct Resolution *resolution, struct PlaneRests *rests
   *rests = (struct PlaneRests){.resolution = resolution, .n = n};
   size_t numbers = 4 * n * n + 7 * n;
   double *block =
-      scratch_take(resolution->instance, SCRATCH_SHARES, numbers * sizeof *block + n * sizeof *rests->impulses.member);
+      scratch_take(resolution->instance, SCRATCH_RESTS, numbers * sizeof *block + n * sizeof *rests->impulses.member);
   if (block == NULL) {
     solver_is_out_of_memory(resolution->instance);
     return false;
@@ -225,11 +227,13 @@ static bool fill_column(struct PlaneRests *rests, size_t column) {
   set_direction(rests, column, trial_direction);
   bool exist = plane_evaluate(rests->resolution);
   double force = exist ? -trial_direction * state_of_row(rests, column).sliding : 0.0;
-  for (size_t row = 0; row < n && force != 0.0; row++) {
-    struct PlaneState state = state_of_row(rests, row);
-    rests->impulses.delassus[row * n + column] = (state.rate[row % 2] - rests->free[row]) / force;
-    rests->stiction[row * n + column] = (state.stiction - rests->given_stiction[row]) / force;
-    rests->kinetic[row * n + column] = (state.sliding - rests->given_kinetic[row]) / force;
+  for (size_t first = 0; first < n && force != 0.0; first += 2) {
+    struct PlaneState state = state_of_row(rests, first);
+    for (size_t row = first; row < first + 2; row++) {
+      rests->impulses.delassus[row * n + column] = (state.rate[row - first] - rests->free[row]) / force;
+      rests->stiction[row * n + column] = (state.stiction - rests->given_stiction[row]) / force;
+      rests->kinetic[row * n + column] = (state.sliding - rests->given_kinetic[row]) / force;
+    }
   }
   set_direction(rests, column, 0.0);
   return exist;
@@ -253,30 +257,18 @@ static bool fill_functions(struct PlaneRests *rests) {
   return exist;
 }
 
+static bool slips(const struct PlaneRests *rests, size_t row) {
+  return rests->slips[row] != 0.0;
+}
+
 static void fill_limits(struct PlaneRests *rests) {
   size_t n = rests->n;
   for (size_t row = 0; row < n; row++) {
-    bool slips = rests->slips[row] != 0.0;
-    rests->impulses.given[row] = (slips ? rests->given_kinetic : rests->given_stiction)[row];
-    memcpy(rests->impulses.coefficient + row * n, (slips ? rests->kinetic : rests->stiction) + row * n,
+    bool is_kinetic = slips(rests, row);
+    rests->impulses.given[row] = (is_kinetic ? rests->given_kinetic : rests->given_stiction)[row];
+    memcpy(rests->impulses.coefficient + row * n, (is_kinetic ? rests->kinetic : rests->stiction) + row * n,
            n * sizeof(double));
   }
-}
-
-/* Computes the accelerations with the forces, and how small they count as 0. */
-static void fill_rates_behind(struct PlaneRests *rests) {
-  double largest = 0.0;
-  for (size_t i = 0; i < rests->n; i++) {
-    rests->behind[i] = rests->free[i];
-    largest = fmax(largest, fabs(rests->free[i]));
-    for (size_t j = 0; j < rests->n; j++) {
-      double term = rests->impulses.delassus[i * rests->n + j] * rests->force[j];
-      rests->behind[i] += term;
-      largest = fmax(largest, fabs(term));
-    }
-  }
-  rests->none = rounded_share * largest;
-  rests->resolution->least_acceleration = rests->none;
 }
 
 /* Returns a limit with the forces, given it without them and its derivatives. */
@@ -291,21 +283,21 @@ static bool accelerates(const struct PlaneRests *rests, size_t row) {
   return hypot(rests->behind[row], rests->behind[row + 1]) > rests->none;
 }
 
-/* True if a friction slips by the solution. */
-static bool slips(const struct PlaneRests *rests, size_t row) {
+/* True if a friction accelerates by the solution, or was overcome and is at its limit. */
+static bool begins_to_slip(const struct PlaneRests *rests, size_t row) {
   const double *force = &rests->force[row];
   struct PlaneState state = state_of_row(rests, row);
   double limit = limit_at(rests, row, rests->impulses.given, rests->impulses.coefficient);
   double least = (1.0 - least_margin) * limit - share_at_limit * largest_stiction(rests->resolution);
   bool is_overcome = *part_of_plane(rests->resolution, &state) == IS_OVERCOME;
-  return rests->slips[row] != 0.0 || accelerates(rests, row) || (is_overcome && hypot(force[0], force[1]) >= least);
+  return accelerates(rests, row) || (is_overcome && hypot(force[0], force[1]) >= least);
 }
 
-/* Lets frictions that slip have their kinetic limit. True if a limit falls. */
+/* Marks the frictions that slip, which have their kinetic limit. True if a limit falls. */
 static bool lower_limits(struct PlaneRests *rests) {
   bool falls = false;
   for (size_t row = 0; row < rests->n; row += 2) {
-    if (rests->slips[row] != 0.0 || !slips(rests, row)) continue;
+    if (slips(rests, row) || !begins_to_slip(rests, row)) continue;
     falls |= limit_at(rests, row, rests->given_stiction, rests->stiction) >
              (1.0 + share_at_limit) * limit_at(rests, row, rests->given_kinetic, rests->kinetic);
     rests->slips[row] = rests->slips[row + 1] = 1.0;
@@ -319,7 +311,8 @@ static bool solve_law(struct PlaneRests *rests) {
   do {
     fill_limits(rests);
     if (!cone_forces_find(rests->resolution, &rests->impulses, rests->free, rests->force)) return false;
-    fill_rates_behind(rests);
+    rests->none = rounded_share * fill_rates_behind(&rests->impulses, rests->free, rests->force, rests->behind);
+    rests->resolution->least_acceleration = rests->none;
   } while (lower_limits(rests));
   return true;
 }
@@ -408,7 +401,7 @@ static bool find_slips(struct Resolution *resolution) {
   release_others(resolution);
   if (!create_rests(resolution, &rests)) return false;
   bool is_done = rests.n == 0 || (solve_law(&rests) && take_rests(&rests));
-  scratch_return(resolution->instance, SCRATCH_SHARES);
+  scratch_return(resolution->instance, SCRATCH_RESTS);
   return is_done;
 }
 
