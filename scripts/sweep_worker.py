@@ -24,6 +24,7 @@ from fmpy.fmi2 import (
 PROBLEMS = ("logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal")  # log categories of warnings and errors
 VARIED = {"Real": float, "Integer": np.intc, "Boolean": np.intc}  # types of variables that a sweep varies, and of their values in C
 opened = {}  # Instance by (thread, hash of the FMU's archive)
+loading = threading.Lock()  # held while FMPy loads a library, since it changes the working directory of the process for that time
 
 
 class Instance:
@@ -36,8 +37,9 @@ class Instance:
         (folder / "runner").write_bytes(runner)
         unzipped = extract(str(folder / "system.fmu"), self.folder.name)
         self.description, self.messages = read_model_description(unzipped), []
-        self.slave = FMU2Slave(guid=self.description.guid, unzipDirectory=unzipped, instanceName="sweep",
-                               modelIdentifier=self.description.coSimulation.modelIdentifier)  # fmt: skip
+        with loading:
+            self.slave = FMU2Slave(guid=self.description.guid, unzipDirectory=unzipped, instanceName="sweep",
+                                   modelIdentifier=self.description.coSimulation.modelIdentifier)  # fmt: skip
         self.callbacks = fmi2CallbackFunctions()
         self.logger = fmi2CallbackLoggerTYPE(lambda *words: self.messages.append(words[4].decode().replace("%%", "%")))
         self.environment = c_void_p(cast(self.logger, c_void_p).value)

@@ -121,6 +121,7 @@ class Parts:
 
     def __init__(self, output, plan):
         digest = hashlib.sha256(json.dumps(plan, sort_keys=True).encode()).hexdigest()[:16]
+        self.output = output
         self.folder = output.with_suffix("").parent / f"{output.stem}.parts-{digest}"
         self.unfinished = output.with_suffix(".part")
         self.lock = self._locked()
@@ -172,7 +173,7 @@ class Parts:
         except (pa.ArrowException, OSError):
             return False
 
-    def join(self, output, count):
+    def join(self, count):
         """Write all chunks into the output, in the order of the runs, and delete their folder; one chunk is in memory at a time."""
         writer = None
         for chunk in range(count):
@@ -180,7 +181,7 @@ class Parts:
             writer = writer or pq.ParquetWriter(self.unfinished, table.schema)
             writer.write_table(table)
         writer.close()
-        replace(self.unfinished, output)
+        replace(self.unfinished, self.output)
         shutil.rmtree(self.folder)
 
     def __enter__(self):
@@ -340,10 +341,11 @@ def sweep(path, folder, words, runner, compile_ensemble):
         ensemble = ensemble_of(path, description, names, settings, runner, compile_ensemble)
     plan = {"fmu": hashlib.sha256(archive).hexdigest(), "names": names, "rows": hashlib.sha256(rows.tobytes()).hexdigest(), "lanes": ensemble is not None, **settings}
     try:
-        with client_of(words.scheduler) if words.scheduler else nullcontext() as client, Parts(output, plan) as parts:
+        # An absolute path, since the working directory is another one while a thread loads an FMU.
+        with client_of(words.scheduler) if words.scheduler else nullcontext() as client, Parts(output.absolute(), plan) as parts:
             task = archive, Path(runner).read_bytes(), rows, names, settings, parts
             count = simulate_with_dask(client, *task) if client else simulate_in_threads(*task, ensemble)
-            parts.join(output, count)
+            parts.join(count)
     except OSError as problem:
         reason = os.strerror(problem.errno) if problem.errno else problem
         remedy = "expected a writable folder with free space, in which the same command continues with the finished runs that are kept beside it"

@@ -278,6 +278,27 @@ def test_commands_as_functions(tmp_path):
     assert (tmp_path / "runs.parquet").exists() and (tmp_path / "SimplePendulumLinear-sweep.parquet").exists()
 
 
+SLOW_LOADING = """
+import os, time, fmpy.fmi1, lagrange_fmu
+from pathlib import Path
+load = fmpy.fmi1.cdll.LoadLibrary
+def slow_load(path):
+    time.sleep(0.3)
+    return load(path)
+fmpy.fmi1.cdll.LoadLibrary = slow_load
+before = os.getcwd()
+lagrange_fmu.sweep(FMU, {"l": (0.5, 2, 1000)}, stop_time=0.1, output="runs.parquet")
+print(os.getcwd() == before, Path("runs.parquet").exists())
+"""
+
+
+def test_a_sweep_writes_while_a_thread_loads(tmp_path):
+    """FMPy changes the working directory while it loads a library, which here takes longer than the runs of the other thread."""
+    folder = package.assemble(tmp_path / "package")
+    script = SLOW_LOADING.replace("FMU", repr(str(fmu.archive("SimplePendulumLinear"))))
+    assert succeed(package.python(folder, "-c", script, cwd=tmp_path)).endswith("\nTrue True\n")
+
+
 INTERRUPTED = """
 import os, signal, sys
 class Interrupt:
