@@ -3,7 +3,8 @@
 
 const PAUSE = 300; // ms from the last key press until the system is derived
 const TIMEOUT = 15; // s after which a derivation is aborted
-const template = `<!doctype html>\n${document.documentElement.outerHTML}`; // the unchanged page, a template for saved pages
+document.currentScript.remove();
+const template = `<!doctype html>\n${document.documentElement.outerHTML}`; // the page as it was written, a template for saved pages
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const bench = (window.bench = { run, runs: 0 }); // for tests and the browser's console

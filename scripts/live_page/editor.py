@@ -7,12 +7,12 @@ from pathlib import Path
 
 from ..problem import Problem
 from ..whole_files import write_whole
-from .page import COMMON_WORKER, common, filled, json_of, licenses, packed, page_of_data, script_of
+from .page import BEGIN, COMMON_WORKER, common, filled, json_of, licenses, packed, page_of_data, script_of
 from .schema import Schema, documentation, enumerated
 
 HERE = Path(__file__).resolve().parent
 LIBXML2_LICENSES = (HERE.parent / "licenses" / "libxml2.txt", HERE.parent.parent / "build" / "libxml2" / "Copyright")  # in the wheel, and in the tree
-STYLE, SCRIPTS = "editor.css", ("unpacking.js", "syntax.js", "completion.js", "editor.js")
+STYLE, SCRIPTS = "editor.css", ("syntax.js", "completion.js", "editor.js")
 SCHEMAS = (HERE / "system.xsd", HERE.parent.parent / "fmu" / "system.xsd")  # in the wheel, and in the tree
 MESHES = (".stl", ".obj")
 CHECKER = ("laboratory.js", "checker.js")
@@ -82,10 +82,11 @@ def editor_of(system, laboratory, examples=None, home=None):
         "common": {"worker": packed(script_of(WORKER).encode()), **common(has_scene=True, has_fmu=True), "licenses": _licenses()},
         "language": packed(json_of(language()).encode()),
         "page": packed(page_of_data("A system", "@DATA@").encode()),
+        "script": packed(script_of(SCRIPTS).encode()),
     }
     title = f"{Path(data['file']).parent.name or Path(data['file']).stem}, to be written"
     style = (HERE / STYLE).read_text(encoding="utf-8")
-    return filled("editor.html", TITLE=html.escape(title), STYLE=style, DATA=json_of(data), SCRIPT=script_of(SCRIPTS))
+    return filled("editor.html", TITLE=html.escape(title), STYLE=style, DATA=json_of(data), SCRIPT=script_of(BEGIN))
 
 
 def write_editor(system, laboratory, path, examples=None, home=None):
