@@ -99,7 +99,14 @@ BESIDE = ("fmu/systems.gif", "fmu/tutorials/laboratory.png", "fmu/tutorials/cran
 STYLE = """
 .systems { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 1rem; }
 .systems div { border: 1px solid #8884; border-radius: 8px; padding: .8rem; display: flex; flex-direction: column; gap: .4rem; }
-.systems img { width: 100%; height: 170px; object-fit: contain; margin: 0; background: #fff; border-radius: 4px; }
+.sketch { display: block; width: 100%; height: 170px; }
+.sketch circle, .sketch polygon { fill: currentColor; }
+.sketch polyline { fill: none; stroke: currentColor; stroke-linecap: round; stroke-linejoin: round; }
+.sketch .ground, .sketch .link { color: var(--bs-secondary-color); }
+.sketch .axis { color: var(--bs-border-color); }
+.sketch .body, .sketch .solid, .sketch .particle { color: var(--bs-link-color); }
+.sketch .base { color: var(--bs-body-color); }
+.sketch .hole { color: var(--bs-body-bg); }
 .systems h3 { margin: 0; font-size: 1.05rem; overflow-wrap: anywhere; }
 .systems p { margin: 0; font-size: .9rem; flex: 1; }
 .systems a { white-space: nowrap; }
@@ -122,8 +129,8 @@ def write_system(archive):
     name, folder = archive.stem, PAGES / "systems" / archive.stem
     folder.mkdir(parents=True)
     with zipfile.ZipFile(archive) as content:
-        write_whole(folder / "picture.png", content.read("model.png"))
-        write_whole(folder / "equations.html", content.read("documentation/index.html"))
+        equations = content.read("documentation/index.html").decode()
+    write_whole(folder / "equations.html", equations)
     shutil.copy(archive, folder / f"{name}.fmu")
     links = {"equations": "equations.html", "FMU": f"{name}.fmu"}
     if (BUILD / "fmi3" / archive.name).exists():
@@ -144,7 +151,13 @@ def write_system(archive):
         addresses = {name_of_first: first, "edit": f"laboratory.html#{name}"} | addresses
     sentence = html.escape(read_tree(archive).get("description") or "")
     words = " · ".join(f'<a href="{address}">{text}</a>' for text, address in addresses.items())
-    return f'<div><a href="{first}"><img src="systems/{name}/picture.png" alt="{name}" loading="lazy"></a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
+    return f'<div><a href="{first}" aria-label="{name}">{sketch_of(equations)}</a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
+
+
+def sketch_of(page):
+    """Return the picture in a system's page of equations, whose colors are those of the page around it; "" if it has none."""
+    found = re.search(r'<svg class="sketch".*?</svg>', page, re.S)
+    return found[0] if found else ""
 
 
 def can_be_edited(name):
