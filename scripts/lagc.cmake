@@ -38,13 +38,13 @@ list_of_names(runtime_sources sources)
 list_of_names(core_rooms rooms)
 file(CONFIGURE OUTPUT runtime_sources.c CONTENT "${sources}${rooms}" @ONLY)
 
-file(GLOB_RECURSE compiler_sources CONFIGURE_DEPENDS ${root}/src/compiler/*.c ${root}/modelDescription/*.c)
+file(GLOB_RECURSE compiler_sources CONFIGURE_DEPENDS ${root}/src/import/*.c ${root}/src/compiler/*.c ${root}/modelDescription/*.c)
 list(REMOVE_ITEM compiler_sources ${root}/src/compiler/main.c)
 add_library(compiler STATIC EXCLUDE_FROM_ALL ${compiler_sources} ${CMAKE_BINARY_DIR}/system_schema.c
             ${CMAKE_BINARY_DIR}/page_style.c ${CMAKE_BINARY_DIR}/page_script.c
             ${CMAKE_BINARY_DIR}/license_text.c ${CMAKE_BINARY_DIR}/runtime_sources.c)
 target_compile_definitions(compiler PUBLIC _XOPEN_SOURCE=700 LAGC_VERSION="${PROJECT_VERSION}")
-target_include_directories(compiler PUBLIC ${root}/include ${root}/src/compiler ${root}/modelDescription)
+target_include_directories(compiler PUBLIC ${root}/include ${root}/src/compiler ${root}/src/import ${root}/modelDescription)
 target_include_directories(compiler SYSTEM PUBLIC ${LIBXML2_INCLUDE_DIRS})
 target_link_libraries(compiler PUBLIC ${LIBXML2_LIBRARIES} m)
 

@@ -30,14 +30,14 @@ LAGC = Layers(
     src/compiler/mechanics
     src/compiler/interface
     src/compiler/display
-    src/compiler/read/names
+    src/compiler/names
+    src/compiler/xml
+    src/import/meshes
+    src/import/robots/description
+    src/import/robots/mjcf
+    src/import/robots
     src/compiler/read/tables
     src/compiler/read/expressions
-    src/compiler/read/xml
-    src/compiler/read/meshes
-    src/compiler/read/robots/description
-    src/compiler/read/robots/mjcf
-    src/compiler/read/robots
     src/compiler/read/context
     src/compiler/read/space
     src/compiler/read/shapes
@@ -57,7 +57,7 @@ LAGC = Layers(
     src/compiler
     src/laboratory
     """.split(),
-    ["src/compiler", "modelDescription", "src/laboratory"],
+    ["src/compiler", "src/import", "modelDescription", "src/laboratory"],
 )
 RUNTIME = Layers(
     """

@@ -167,7 +167,7 @@ def faults_of(path):
         for number, comment in comments_of(path):
             yield from ((number, *fault) for fault in wrong_words(comment))
             yield from ((number + line, *fault) for line, *fault in long_sentences(paragraphs_of_comment(comment)))
-        if "compiler" in path.parts and path.suffix == ".c":
+        if {"compiler", "import"} & set(path.parts) and path.suffix == ".c":
             yield from messages_without_remedy(text)
         code = re.sub(r'(?s)""".*?"""', lambda match: "\n" * match[0].count("\n"), text)
         yield from ((number, name, instead) for number, name, instead in wrong_names(code) if "tests" not in path.parts or "held" not in name)

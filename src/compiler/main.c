@@ -15,12 +15,12 @@
 #include "output.h"
 #include "page/equation_lines.h"
 #include "program/program.h"
-#include "read/names/words.h"
-#include "read/robots/description/robot.h"
+#include "names/words.h"
+#include "robots/description/robot_options.h"
 #include "read/reader.h"
 #include "read/context/value_texts.h"
 #include "read/sensitivities.h"
-#include "read/xml/schema.h"
+#include "xml/schema.h"
 
 static const char usage[] =
     "usage: lagc SYSTEM.xml -o DIR [--solver METHOD] [--form FORM] [--pull] [--adjoint] [--arrays]\n"

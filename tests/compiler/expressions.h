@@ -12,7 +12,7 @@
 #include <cmocka.h>
 
 #include "read/expressions/parser.h"
-#include "read/names/words.h"
+#include "names/words.h"
 #include "algebra/formula.h"
 #include "algebra/simplify.h"
 

@@ -1,7 +1,7 @@
 /* The table of names, against a plain list of its content. */
 #include "base/memory.h"
 #include "expressions.h"
-#include "read/names/names.h"
+#include "names/names.h"
 
 enum { NAMES = 3000 };
 

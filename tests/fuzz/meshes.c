@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/meshes/hull.h"
-#include "read/meshes/obj.h"
-#include "read/meshes/stl.h"
+#include "model/hull.h"
+#include "meshes/obj.h"
+#include "meshes/stl.h"
 #include "scene/packed_mesh.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);

@@ -103,11 +103,11 @@ class Mesh(ctypes.Structure):
 @pytest.fixture(scope="module")
 def library():
     """Compile the room of lagc that reads meshes as a library."""
-    sources = [*(ROOT / "src/compiler/read/meshes").glob("*.c"), ROOT / "src/compiler/model/mesh.c"]
+    sources = [*(ROOT / "src/import/meshes").glob("*.c"), *(ROOT / f"src/compiler/model/{name}.c" for name in ("mesh", "hull"))]
     sources += [ROOT / f"src/compiler/base/{name}.c" for name in ("memory", "paths", "platform", "sorting")]
     path = BUILD / "meshes" / "room.so"
     with alone(BUILD / "meshes" / "room.lock"):
-        subprocess.run(["gcc", "-O2", "-shared", "-fPIC", "-D_XOPEN_SOURCE=700", f"-I{ROOT}/src/compiler", *sources, "-lm", "-o", path], check=True)
+        subprocess.run(["gcc", "-O2", "-shared", "-fPIC", "-D_XOPEN_SOURCE=700", f"-I{ROOT}/src/compiler", f"-I{ROOT}/src/import", *sources, "-lm", "-o", path], check=True)
     return ctypes.CDLL(path)
 
 

@@ -7,7 +7,6 @@
 #include "mechanics/energies.h"
 #include "read/event_checks.h"
 #include "read/expressions/named_functions.h"
-#include "read/robots/description/rigid_body.h"
 #include "read/state_checks.h"
 
 static void check_work(const struct Reader *reader) {
@@ -97,17 +96,42 @@ static void warn_of_inertia(const struct Reader *reader, const struct Body *body
                  what, body->name, values[inertia]);
 }
 
+/* True if a symmetric matrix is positive semidefinite: all principal minors are nonnegative (Sylvester). */
+static bool is_semidefinite(double m[3][3]) {
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3;
+    if (m[i][i] < 0 || m[i][i] * m[j][j] < m[i][j] * m[i][j]) return false;
+  }
+  double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[1][2]) -
+                       m[0][1] * (m[0][1] * m[2][2] - m[1][2] * m[0][2]) +
+                       m[0][2] * (m[0][1] * m[1][2] - m[1][1] * m[0][2]);
+  return determinant >= 0;
+}
+
+/*
+ * True if the principal moments of inertia are possible: none is negative or exceeds the sum of the other two. One
+ * percent of the trace is allowed for rounded numbers in files. trace/2 minus a principal moment is the second moment
+ * of the mass along that axis, which is nonnegative.
+ */
+static bool tensor_is_of_a_body(double tensor[3][3]) {
+  double moments[3][3];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      moments[i][j] = (i == j ? 0.51 * (tensor[0][0] + tensor[1][1] + tensor[2][2]) : 0) - tensor[i][j];
+  return is_semidefinite(moments);
+}
+
 /*
  * Warns of an inertia tensor that violates the triangle inequality of principal moments. Skipped if a diagonal element
  * is missing: authors of bodies that rotate about one axis give only that moment.
  */
 static void warn_of_tensor(const struct Reader *reader, const struct Body *body, const double *values) {
-  struct Matrix3 tensor;
+  double tensor[3][3];
   for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) tensor.at[i][j] = values[body->tensor.row[i].along[j]];
+    for (int j = 0; j < 3; j++) tensor[i][j] = values[body->tensor.row[i].along[j]];
   for (int i = 0; i < 3; i++)
     if (body->tensor.row[i].along[i] == ZERO) return;
-  if (tensor_is_of_a_body(&tensor)) return;
+  if (tensor_is_of_a_body(tensor)) return;
   report_warning(reader->diagnostics, body->line,
                  "no body can have the moments of inertia of '%s' at the start values: a principal moment is negative, "
                  "or larger than the other two together; expected others",

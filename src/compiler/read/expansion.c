@@ -15,7 +15,7 @@
 #include "base/memory.h"
 #include "read/context/includes.h"
 #include "read/elements/elements.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 
 /* Largest number of repetitions of a <for>; units of work of a repetition, an include and an element. */
 enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };

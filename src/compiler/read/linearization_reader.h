@@ -5,7 +5,7 @@
 
 #include "base/diagnostics.h"
 #include "model/model.h"
-#include "read/names/scope.h"
+#include "names/scope.h"
 
 /* Returns the path of the system that root linearizes, relative to the file of root; NULL if root names none. */
 char *linearized_path(xmlNodePtr root, const char *path);

@@ -28,14 +28,14 @@
 #include "read/elements/switching_reader.h"
 #include "read/expansion.h"
 #include "read/linearization_reader.h"
-#include "read/names/definitions.h"
-#include "read/names/words.h"
+#include "names/definitions.h"
+#include "names/words.h"
 #include "read/pointer_interaction.h"
-#include "read/robots/robot_system.h"
+#include "robots/robot_system.h"
 #include "read/shapes/drawn_lines.h"
 #include "read/space/frames.h"
 #include "read/tables/table.h"
-#include "read/xml/xml.h"
+#include "xml/xml.h"
 
 /* Adds the symbols of accelerations and sets the time derivatives of time, coordinates and velocities. */
 static void relate_to_time(struct Model *model, struct Scope *scope) {

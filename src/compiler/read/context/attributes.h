@@ -4,8 +4,8 @@
 #include "model/model.h"
 #include "read/context/reader_options.h"
 #include "read/expressions/parser.h"
-#include "read/names/piecewise_functions.h"
-#include "read/xml/nodes.h"
+#include "names/piecewise_functions.h"
+#include "xml/nodes.h"
 
 /* The passes over the list of elements, in this order. Each uses names that earlier passes defined. */
 enum Pass { DECLARATIONS, DEFINITIONS, POSITIONS, EXPRESSIONS, DRAWING };

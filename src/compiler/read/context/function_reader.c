@@ -6,8 +6,8 @@
 #include "base/memory.h"
 #include "read/context/includes.h"
 #include "read/expressions/named_functions.h"
-#include "read/names/definitions.h"
-#include "read/names/words.h"
+#include "names/definitions.h"
+#include "names/words.h"
 
 static void check_argument(struct Reader *reader, xmlNodePtr node, const struct NamedFunction *function,
                            const char *name) {

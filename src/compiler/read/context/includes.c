@@ -5,8 +5,8 @@
 
 #include "base/memory.h"
 #include "base/paths.h"
-#include "read/robots/robot_system.h"
-#include "read/xml/xml.h"
+#include "robots/robot_system.h"
+#include "xml/xml.h"
 
 /* The files of a system, and the overrides by <include>s. */
 struct Includes {

@@ -7,7 +7,7 @@
 
 #include "algebra/units/other_units.h"
 #include "read/expressions/parser.h"
-#include "read/names/words.h"
+#include "names/words.h"
 
 /* A value x in the unit is factor * x + offset in the coherent unit of its dimension. */
 static bool scale_of(const char *unit, struct Dimension *dimension, struct UnitScale *scale) {

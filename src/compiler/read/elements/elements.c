@@ -18,7 +18,7 @@
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "read/elements/table_reader.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 #include "read/shapes/drawn_lines.h"
 #include "read/shapes/shapes.h"
 #include "read/space/bodies.h"

@@ -5,7 +5,7 @@
 #include "base/memory.h"
 #include "read/elements/switching_reader.h"
 #include "read/expressions/comparisons.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 
 /* Kinds of symbols in conditions and assignments of events. */
 enum { IN_EVENT = IN_CONDITION | KIND(ACCELERATION) | CONTACT_STATE };

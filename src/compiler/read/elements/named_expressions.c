@@ -4,7 +4,7 @@
 
 #include "base/memory.h"
 #include "read/context/variables.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 #include "read/space/joints.h"

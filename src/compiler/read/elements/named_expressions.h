@@ -5,7 +5,7 @@
 #pragma once
 
 #include "read/context/includes.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 
 /* True if a <parameter> or <input> has a value, its own or an override, instead of a start value. */
 bool has_value(xmlNodePtr node, const struct Override *overrides);

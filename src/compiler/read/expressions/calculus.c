@@ -9,7 +9,7 @@
 #include "read/expressions/integration.h"
 #include "read/expressions/parser.h"
 #include "read/expressions/quantities.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 
 static const struct Quantity nothing = {.node = ZERO};
 static const char integral_form[] = "integral(name, from, to, expression)";

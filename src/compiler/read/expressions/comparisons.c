@@ -6,7 +6,7 @@
 #include "algebra/simplify.h"
 #include "read/expressions/parser.h"
 #include "read/expressions/quantities.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 
 enum Comparison { NO_COMPARISON, MORE, MORE_OR_EQUAL, LESS_THAN_OTHER, LESS_OR_EQUAL };
 

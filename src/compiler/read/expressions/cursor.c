@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/names/hints.h"
+#include "names/hints.h"
 
 long current_line(struct Parser *parser) {
   for (; parser->counted < parser->next; parser->counted++) parser->newlines += *parser->counted == '\n';

@@ -1,8 +1,8 @@
 /* The state of the expression parser: reading position, local names and error flag. */
 #pragma once
 
-#include "read/names/definitions.h"
-#include "read/names/scope.h"
+#include "names/definitions.h"
+#include "names/scope.h"
 
 /* The context of an expression: its line and subject for messages, and the symbols that it may depend on. */
 struct Location {

@@ -20,7 +20,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/expressions/integration_error.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 
 /* Largest number of nodes that lagc chooses, the same for limits that move, and the number of sample states. */
 enum { CHOICE_LIMIT = 32, MOVING_CHOICE_LIMIT = 128, SAMPLES = 6 };

@@ -4,7 +4,7 @@
 #include <stdint.h>
 
 #include "algebra/quadrature.h"
-#include "read/names/scope.h"
+#include "names/scope.h"
 
 /* A quadrature rule: nodes in (0, 1), ascending, and their weights, whose sum is 1. */
 struct Rule {

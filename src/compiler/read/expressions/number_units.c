@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 
 /* Returns the factor with more digits, which is more likely a measured quantity: 9.81 rather than 2. */
 struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFactor second) {

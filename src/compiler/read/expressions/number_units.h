@@ -5,7 +5,7 @@
  */
 #pragma once
 
-#include "read/names/scope.h"
+#include "names/scope.h"
 
 /* Return the numeric factor of a product, and of a power or divisor. */
 struct NumberFactor factor_of_product(struct NumberFactor first, struct NumberFactor second);

@@ -16,9 +16,9 @@
 #include "read/expressions/quantities.h"
 #include "read/expressions/unknown_names.h"
 #include "read/expressions/vectors.h"
-#include "read/names/piecewise_functions.h"
-#include "read/names/hints.h"
-#include "read/names/words.h"
+#include "names/piecewise_functions.h"
+#include "names/hints.h"
+#include "names/words.h"
 #include "read/tables/table.h"
 
 /*

@@ -11,7 +11,7 @@
 #include "base/memory.h"
 #include "model/model.h"
 #include "read/expressions/number_units.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 
 static double value_at_start(const struct Scope *scope, Node node) {
   const struct Graph *graph = scope->graph;

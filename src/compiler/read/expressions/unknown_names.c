@@ -5,10 +5,10 @@
 #include "algebra/functions.h"
 #include "base/memory.h"
 #include "read/expressions/named_functions.h"
-#include "read/names/definitions.h"
-#include "read/names/hints.h"
-#include "read/names/similar.h"
-#include "read/names/words.h"
+#include "names/definitions.h"
+#include "names/hints.h"
+#include "names/similar.h"
+#include "names/words.h"
 #include "read/tables/table.h"
 
 /* Returns the kinds of names that are allowed here, for messages. */

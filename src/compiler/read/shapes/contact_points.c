@@ -12,7 +12,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 
 /* Points on each rim of a cylinder, and the largest number of points of a shape. */
 enum { RIM_POINTS = 8, RIMS_POINTS = 2 * RIM_POINTS, MOST_POINTS = MOST_CORNERS };

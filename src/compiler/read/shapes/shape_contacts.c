@@ -3,7 +3,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/context/variables.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 #include "read/shapes/shape_meshes.h"
 #include "read/shapes/shapes.h"
 #include "read/shapes/tangents.h"

@@ -5,9 +5,9 @@
 
 #include "base/memory.h"
 #include "read/context/includes.h"
-#include "read/meshes/hull.h"
-#include "read/meshes/mesh_file.h"
-#include "read/names/names.h"
+#include "model/hull.h"
+#include "meshes/mesh_file.h"
+#include "names/names.h"
 
 /* Reads one factor for all axes, or three. */
 static bool read_scale(struct Reader *reader, xmlNodePtr node, double scale[3]) {

@@ -6,7 +6,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/names/similar.h"
+#include "names/similar.h"
 #include "read/shapes/shape_meshes.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"

@@ -5,8 +5,8 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/context/variables.h"
-#include "read/names/definitions.h"
-#include "read/names/similar.h"
+#include "names/definitions.h"
+#include "names/similar.h"
 #include "read/space/rotations.h"
 
 static const char *const frame_components[] = {"x",   "y",   "z",   "R11", "R12", "R13", "R21",

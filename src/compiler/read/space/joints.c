@@ -8,7 +8,7 @@
 #include "read/context/attributes.h"
 #include "read/context/constraint_checks.h"
 #include "read/context/variables.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 #include "read/space/rolling.h"
 #include "read/space/joint_ends.h"
 #include "read/space/vanishing.h"

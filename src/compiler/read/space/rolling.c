@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "algebra/simplify.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 
 enum { X, Y, Z };
 

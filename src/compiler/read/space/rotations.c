@@ -6,7 +6,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 
 xmlNodePtr quaternion_of(xmlNodePtr frame) {
   for (xmlNodePtr step = frame->children; step != NULL; step = step->next)

@@ -5,7 +5,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/context/variables.h"
-#include "read/names/definitions.h"
+#include "names/definitions.h"
 
 static const char *const components[] = {"length", "force"};
 static const char *const units[] = {"m", "N"};

@@ -1,7 +1,7 @@
 #include "read/tables/piecewise.h"
 
 #include "algebra/simplify.h"
-#include "read/names/piecewise_functions.h"
+#include "names/piecewise_functions.h"
 
 static const char needed_by[] = "a table";
 

@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "read/names/scope.h"
+#include "names/scope.h"
 
 /* Returns x clamped to the interval, minus from. */
 Node clamped_offset(struct Scope *scope, Node x, double from, double to);

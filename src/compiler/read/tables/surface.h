@@ -4,7 +4,7 @@
  */
 #pragma once
 
-#include "read/names/scope.h"
+#include "names/scope.h"
 #include "read/tables/curve.h"
 
 /* The value at x[column] and y[row], and the derivatives there, have the index row * columns + column. */

@@ -1,0 +1,42 @@
+/* Options of an <include>, or of the command line, for robots. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/diagnostics.h"
+
+/* The options; zeros for none. */
+struct RobotOptions {
+  bool floats;                                /* the root link moves freely; else it is fixed in the base */
+  bool has_stops;                             /* limits are stops; else outputs report violations */
+  bool sticks;                                /* joint friction is dry; else it is regularized and allows creep */
+  bool has_ground;                            /* shapes of links touch a plane */
+  bool says_ground, says_limits, says_effort; /* the <include> has these attributes, with any value */
+  const char *ground_contact;                 /* names of these links, separated by blanks; NULL for all that move */
+  bool is_effort_limited;                     /* motors are limited by their effort */
+  const char *keyframe;                       /* name of the MJCF keyframe for start values; NULL for the default */
+  const char *tool; /* link with outputs of its position and velocity; NULL for the only leaf */
+};
+
+/* The attributes of an <include> for these options. */
+enum RobotWord {
+  BASE_WORD,
+  TOOL_WORD,
+  LIMITS_WORD,
+  FRICTION_WORD,
+  EFFORT_WORD,
+  GROUND_WORD,
+  KEYFRAME_WORD,
+  ROBOT_WORDS
+};
+
+/* Returns the name of such an attribute. */
+const char *robot_word(size_t index);
+
+/* Returns the options for the values of these attributes, NULL for missing ones. */
+struct RobotOptions robot_options_of(const char *const texts[ROBOT_WORDS]);
+
+/* Sets the options from texts such as "base=floating". Returns false after reporting a wrong one. */
+bool robot_options_parse(const char *const *given, size_t count, struct RobotOptions *options,
+                         struct Diagnostics *diagnostics);

@@ -1,0 +1,326 @@
+/*
+ * Conversion of MJCF to links and joints.
+ *
+ * A body with n joints becomes a chain of n links, the last of which is the body; the others have no mass. The frame of
+ * a joint has its origin at the anchor `pos`. If the last anchor is not the origin of the body, one more link at the
+ * anchor carries the body by a fixed joint. A hinge or slide is at `ref` when its body is as placed, so that the
+ * constant placement of the joint includes the displacement by -ref. Sites become links that are fixed to their body.
+ * Geoms give inertias and shapes.
+ *
+ * Sections are read in the order of their dependencies: compiler, option, contact rules, geoms of the world, bodies,
+ * tendons, actuators, equalities, keyframe. Defaults are looked up in the classes of each element, see mjcf_values.c.
+ */
+#include "robots/mjcf/mjcf.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "robots/mjcf/mjcf_actuators.h"
+#include "robots/mjcf/mjcf_attributes.h"
+#include "robots/mjcf/mjcf_contacts.h"
+#include "robots/mjcf/mjcf_equality.h"
+#include "robots/mjcf/mjcf_geoms.h"
+#include "robots/mjcf/mjcf_includes.h"
+#include "robots/mjcf/mjcf_keyframe.h"
+#include "robots/mjcf/mjcf_tendons.h"
+#include "robots/mjcf/mjcf_tree.h"
+#include "robots/mjcf/mjcf_values.h"
+#include "xml/nodes.h"
+
+/* Reports unsupported elements, at any depth, that would change the motion. */
+static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const rejected[][2] = {{"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
+                                            {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
+                                            {"composite", "rigid bodies"},
+                                            {"flexcomp", "rigid bodies"},
+                                            {"flex", "rigid bodies"},
+                                            {"plugin", "a file without it"}};
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    if (child->type != XML_ELEMENT_NODE || is_element(child, "sensor") || is_element(child, "asset")) continue;
+    for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++)
+      if (is_element(child, rejected[i][0])) mjcf_report_unknown(mjcf, child, rejected[i][1]);
+    check_elements(mjcf, child);
+  }
+}
+
+static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const units[] = {"degree", "radian", NULL}, *const where[] = {"auto", "true", "false", NULL};
+  static const char *const rejected[] = {"boundmass", "boundinertia", "balanceinertia"};
+  if (has_attribute(node, "angle")) mjcf->angle = mjcf_word(mjcf, node, "angle", units) == 1 ? 1 : M_PI / 180;
+  if (has_attribute(node, "autolimits")) mjcf->has_automatic_limits = attribute_is(node, "autolimits", "true");
+  if (has_attribute(node, "inertiafromgeom"))
+    mjcf->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
+  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
+  mjcf->total_mass = mjcf_number(mjcf, node, "settotalmass", mjcf->total_mass);
+  mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
+  if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
+    report_error(mjcf->file.diagnostics, line_of(node), "coordinate=\"%s\" of <compiler> is not read; expected local",
+                 attribute(node, "coordinate"));
+  if (has_attribute(node, "assetdir") && mjcf->mesh_folder == NULL) mjcf->mesh_folder = attribute(node, "assetdir");
+  if (has_attribute(node, "meshdir")) mjcf->mesh_folder = attribute(node, "meshdir");
+  const char *sequence = attribute(node, "eulerseq");
+  if (sequence == NULL) return;
+  if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
+  else
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "eulerseq=\"%.60s\" of <compiler> is not valid; expected three of the letters x, y, z, X, Y, Z",
+                 sequence);
+}
+
+static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const flags[] = {"passive", "spring",   "damper",       "actuation", "clampctrl",
+                                      "limit",   "equality", "frictionloss", "constraint"};
+  double groups[ACTUATOR_GROUPS];
+  mjcf_numbers(mjcf, node, "gravity", 3, 3, mjcf->file.robot->gravity);
+  mjcf_reject(mjcf, node, "density");
+  mjcf_reject(mjcf, node, "viscosity");
+  size_t count = mjcf_numbers(mjcf, node, "actuatorgroupdisable", 1, ACTUATOR_GROUPS, groups);
+  for (size_t i = 0; i < count; i++)
+    if (groups[i] >= 0 && groups[i] < ACTUATOR_GROUPS) mjcf->is_off[(size_t)groups[i]] = true;
+  xmlNodePtr flag = child_of(&mjcf->file, node, "flag");
+  if (flag == NULL) return;
+  mjcf->has_no_contacts |= attribute_is(flag, "contact", "disable");
+  mjcf->touches_parents |= attribute_is(flag, "filterparent", "disable");
+  if (attribute_is(flag, "gravity", "disable")) memset(mjcf->file.robot->gravity, 0, sizeof(double[3]));
+  for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
+    if (attribute_is(flag, flags[i], "disable"))
+      report_error(mjcf->file.diagnostics, line_of(flag), "%s=\"disable\" of <flag> is not read; remove it", flags[i]);
+}
+
+static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
+  mjcf_numbers(mjcf, node, "axis", 3, 3, joint->axis);
+  if (make_unit(joint->axis) == 0)
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "the axis of the joint '%s' has the length 0; expected a direction such as 0 0 1", joint->name);
+}
+
+/* Reads a hinge or slide. Its coordinate is `ref` when its body is as placed. */
+static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
+  double scale = joint->type == REVOLUTE ? mjcf->angle : 1, limits[2];
+  read_axis(mjcf, node, joint);
+  joint->start.position[0] = mjcf_number(mjcf, node, "ref", 0) * scale;
+  joint->rest = mjcf_number(mjcf, node, "springref", 0) * scale;
+  joint->stiffness = mjcf_number_not_negative(mjcf, node, "stiffness", 0);
+  joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+  joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+  joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
+  mjcf_reject(mjcf, node, "springdamper");
+  mjcf_limits(mjcf, node, "actuatorfrcrange", "actuatorfrclimited", joint->actuator_limits);
+  mjcf_limits(mjcf, node, "range", "limited", limits);
+  joint->lower = limits[0] * scale;
+  joint->upper = limits[1] * scale;
+  struct Placement back = no_displacement;
+  if (joint->type == REVOLUTE) back.rotation = rotation_about(joint->axis, -joint->start.position[0]);
+  else
+    for (int i = 0; i < 3; i++) back.translation[i] = -joint->axis[i] * joint->start.position[0];
+  joint->origin = placement_within(&joint->origin, &back);
+}
+
+/* Reads a joint with several coordinates: isotropic damping and armature. Reports features of single coordinates. */
+static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
+  static const char *const rejected[] = {"stiffness", "springdamper", "actuatorfrcrange"};
+  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
+  joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
+  joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
+  if (joint->type == FLOATING) joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
+  else mjcf_reject(mjcf, node, "frictionloss");
+  if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
+}
+
+/* Sets the start of a free joint to the placement of its body, with the quaternion of its roll, pitch and yaw. */
+static void read_free(struct Mjcf *mjcf, struct RobotJoint *joint, const struct Placement *placement) {
+  double angles[3], s[3], c[3];
+  if (strcmp(joint->parent_name, mjcf_world) != 0)
+    report_error(mjcf->file.diagnostics, joint->line,
+                 "the free joint '%s' is in the body '%s'; expected it in a <body> of the <worldbody>", joint->name,
+                 joint->child_name);
+  placement_angles(placement, angles);
+  for (int i = 0; i < 3; i++) {
+    joint->start.position[i] = placement->translation[i];
+    s[i] = sin(angles[i] / 2);
+    c[i] = cos(angles[i] / 2);
+  }
+  joint->start.position[3] = c[0] * c[1] * c[2] + s[0] * s[1] * s[2];
+  joint->start.position[4] = s[0] * c[1] * c[2] - c[0] * s[1] * s[2];
+  joint->start.position[5] = c[0] * s[1] * c[2] + s[0] * c[1] * s[2];
+  joint->start.position[6] = c[0] * c[1] * s[2] - s[0] * s[1] * c[2];
+}
+
+/* The joints of a body, connected in series by massless links. */
+struct Chain {
+  char *body, *parent;        /* the last link so far */
+  struct Placement placement; /* of the body in that link, if all remaining joints are at their ref */
+  size_t count;
+  bool is_free, has_body;
+};
+
+static bool is_joint(xmlNodePtr node) {
+  return is_element(node, "joint") || is_element(node, "freejoint");
+}
+
+static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain, bool is_last) {
+  static const char *const words[] = {"hinge", "slide", "ball", "free", NULL};
+  static const enum RobotJointType types[] = {REVOLUTE, PRISMATIC, BALL, FLOATING};
+  enum RobotJointType type = is_element(node, "freejoint") ? FLOATING : types[mjcf_word(mjcf, node, "type", words)];
+  char *name = attribute(node, "name");
+  struct Placement anchor = no_displacement, back = no_displacement;
+  if (type != FLOATING) mjcf_numbers(mjcf, node, "pos", 3, 3, anchor.translation);
+  for (int i = 0; i < 3; i++) back.translation[i] -= anchor.translation[i];
+  bool is_offset = back.translation[0] != 0 || back.translation[1] != 0 || back.translation[2] != 0;
+  if (name == NULL)
+    name = type == FLOATING ? copy_text(chain->body) : format_text("%s_joint%zu", chain->body, chain->count + 1);
+  char *child = is_last && !is_offset ? chain->body : format_text("%s_%s", chain->body, name);
+  struct RobotJoint *joint = mjcf_add_joint(mjcf, node, type, name, chain->parent, child);
+  chain->is_free |= type == FLOATING;
+  if (type == FLOATING) read_free(mjcf, joint, &chain->placement);
+  else joint->origin = placement_within(&chain->placement, &anchor);
+  if (type == REVOLUTE || type == PRISMATIC) read_single(mjcf, node, joint);
+  else read_several(mjcf, node, joint);
+  if (child != chain->body) mjcf_add_link(mjcf, node, child);
+  chain->has_body = child == chain->body;
+  chain->parent = child;
+  chain->placement = back;
+  chain->count++;
+}
+
+static void read_joints(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain) {
+  xmlNodePtr last = NULL;
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (is_joint(child)) last = child;
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (is_joint(child)) add_to_chain(mjcf, child, chain, child == last);
+  if (chain->is_free && chain->count > 1)
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
+  if (!chain->has_body) mjcf_fix(mjcf, node, chain->parent, chain->body, &chain->placement);
+}
+
+static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer);
+
+static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
+  char *name = attribute(node, "name");
+  if (name == NULL) name = format_text("body%zu", ++mjcf->unnamed_count);
+  struct Placement placement = mjcf_placement(mjcf, node);
+  struct Chain chain = {.body = name, .parent = parent, .placement = placement_within(outer, &placement)};
+  struct RobotLink *link = mjcf_add_link(mjcf, node, name);
+  link->weightless = mjcf_number(mjcf, node, "gravcomp", 0);
+  if (attribute_is(node, "mocap", "true"))
+    warn_unread(&mjcf->file, line_of(node), "mocap of <body>, which stands still,",
+                "a <freejoint>, or a frame that inputs move in a <system> that includes the robot");
+  mjcf_note_placement(mjcf, name, parent, &chain.placement);
+  read_joints(mjcf, node, &chain);
+  mjcf_read_body(mjcf, node, link);
+  read_children(mjcf, node, name, &no_displacement);
+}
+
+static void read_site(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
+  char *name = attribute(node, "name");
+  if (name == NULL) return;
+  struct Placement placement = mjcf_placement(mjcf, node);
+  placement = placement_within(outer, &placement);
+  name = mjcf_site_link(mjcf, name);
+  mjcf_add_link(mjcf, node, name);
+  mjcf_fix(mjcf, node, parent, name, &placement);
+  mjcf_note_placement(mjcf, name, parent, &placement);
+}
+
+/* Reads bodies and sites, also in <frame>s, which transform them. */
+static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer) {
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    if (is_element(child, "body")) read_body(mjcf, child, parent, outer);
+    else if (is_element(child, "site")) read_site(mjcf, child, parent, outer);
+    else if (is_element(child, "frame")) {
+      struct Placement inner = mjcf_placement(mjcf, child);
+      inner = placement_within(outer, &inner);
+      read_children(mjcf, child, parent, &inner);
+    } else if (is_joint(child) && !is_element(node, "body"))
+      report_error(mjcf->file.diagnostics, line_of(child), "a <%s> is in a <%s>; expected it in a <body>",
+                   (const char *)child->name, (const char *)node->name);
+  }
+}
+
+typedef void Read(struct Mjcf *mjcf, xmlNodePtr node);
+
+/* Calls `read` for each section of this name, or if inside for each element in them. */
+static void for_each(struct Mjcf *mjcf, const char *section, bool inside, Read *read) {
+  for (xmlNodePtr node = mjcf->root->children; node != NULL; node = node->next) {
+    if (!is_element(node, section)) continue;
+    if (!inside) read(mjcf, node);
+    for (xmlNodePtr child = node->children; inside && child != NULL; child = child->next)
+      if (child->type == XML_ELEMENT_NODE) read(mjcf, child);
+  }
+}
+
+static void read_geoms_of_world(struct Mjcf *mjcf, xmlNodePtr node) {
+  mjcf_read_body(mjcf, node, mjcf->file.robot->links[0]);
+}
+
+static void read_world(struct Mjcf *mjcf, xmlNodePtr node) {
+  read_children(mjcf, node, mjcf->file.robot->links[0]->name, &no_displacement);
+}
+
+/* Scales all masses and inertias to the sum that the file sets. */
+static void set_total_mass(struct Mjcf *mjcf) {
+  const struct Robot *robot = mjcf->file.robot;
+  double sum = 0;
+  for (size_t i = 0; i < robot->link_count; i++) sum += robot->links[i]->body.mass;
+  for (size_t i = 0; i < robot->link_count && mjcf->total_mass > 0 && sum > 0; i++)
+    robot->links[i]->body = body_scaled(&robot->links[i]->body, mjcf->total_mass / sum);
+}
+
+static void check_world(struct Mjcf *mjcf) {
+  xmlNodePtr node = mjcf->root->children;
+  while (node != NULL && !is_element(node, "worldbody")) node = node->next;
+  if (node == NULL)
+    report_error(mjcf->file.diagnostics, mjcf->file.robot->line, "<mujoco> has no <worldbody>; expected one in it");
+}
+
+struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
+  static const char *const known[] = {"compiler", "option", "default", "worldbody", "actuator", "equality",
+                                      "keyframe", "asset",  "tendon",  "contact",   NULL};
+  struct Robot *robot = allocate(1, sizeof *robot);
+  struct Mjcf mjcf = {.file = {.robot = robot, .options = options, .diagnostics = diagnostics},
+                      .root = root,
+                      .meshes = names_create(),
+                      .bodies = names_create(),
+                      .placements = names_create(),
+                      .angle = M_PI / 180,
+                      .total_mass = -1,
+                      .euler_sequence = "xyz",
+                      .inertia_groups = {0, 5},
+                      .has_automatic_limits = true};
+  int errors = diagnostics->errors;
+  robot->name = attribute(root, "model");
+  if (robot->name == NULL || *robot->name == '\0') robot->name = copy_text("robot");
+  robot->line = line_of(root);
+  robot->gravity[2] = -9.81;
+  if (options->floats)
+    report_error(diagnostics, robot->line,
+                 "base=\"floating\" is for URDF; expected a <freejoint> in the body that moves");
+  mjcf_insert_files(root, diagnostics);
+  check_world(&mjcf);
+  mjcf_check_classes(&mjcf, root);
+  check_elements(&mjcf, root);
+  if (diagnostics->errors > errors) return robot;
+  for_each(&mjcf, "compiler", false, read_compiler);
+  for_each(&mjcf, "option", false, read_option);
+  mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
+  mjcf_note_placement(&mjcf, mjcf_world, NULL, &no_displacement);
+  for_each(&mjcf, "contact", true, mjcf_read_rule);
+  for_each(&mjcf, "worldbody", false, mjcf_note_bodies);
+  for_each(&mjcf, "worldbody", false, read_geoms_of_world);
+  for_each(&mjcf, "worldbody", false, read_world);
+  set_total_mass(&mjcf);
+  for_each(&mjcf, "tendon", true, mjcf_read_tendon);
+  for_each(&mjcf, "actuator", true, mjcf_read_actuator);
+  for_each(&mjcf, "equality", true, mjcf_read_equality);
+  if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
+  if (diagnostics->errors == errors) {
+    mjcf_check_contacts(&mjcf);
+    mjcf_check_attributes(&mjcf);
+  }
+  leave_out_others(&mjcf.file, root, known);
+  report_left_out(&mjcf.file);
+  return robot;
+}

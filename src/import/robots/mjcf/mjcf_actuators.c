@@ -1,0 +1,184 @@
+#include "robots/mjcf/mjcf_actuators.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "robots/mjcf/mjcf_tendons.h"
+#include "robots/mjcf/mjcf_tree.h"
+#include "xml/nodes.h"
+
+/* Sets the dynamics of a filter, or none if the time constant is 0. */
+static void set_filter(struct Actuator *actuator, double time_constant) {
+  actuator->dynamics = time_constant > 0 ? FILTER : WITHOUT_STATE;
+  actuator->time_constant = time_constant;
+}
+
+static void read_motor(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  (void)mjcf, (void)node;
+  actuator->gain[0] = 1;
+}
+
+static void read_position(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "kp", 1);
+  actuator->bias[1] = -actuator->gain[0];
+  actuator->bias[2] = -mjcf_number_not_negative(mjcf, node, "kv", 0);
+  set_filter(actuator, mjcf_number_not_negative(mjcf, node, "timeconst", 0));
+}
+
+static void read_integrated_velocity(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  read_position(mjcf, node, actuator);
+  actuator->dynamics = INTEGRATOR;
+}
+
+static void read_velocity(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "kv", 1);
+  actuator->bias[2] = -actuator->gain[0];
+}
+
+static void read_damper(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  actuator->gain[2] = -mjcf_number_not_negative(mjcf, node, "kv", 1);
+}
+
+static void read_cylinder(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  double diameter = mjcf_number_not_negative(mjcf, node, "diameter", 0);
+  actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "area", 1);
+  if (diameter > 0) actuator->gain[0] = M_PI / 4 * diameter * diameter;
+  mjcf_numbers(mjcf, node, "bias", 3, 3, actuator->bias);
+  set_filter(actuator, mjcf_number_not_negative(mjcf, node, "timeconst", 1));
+}
+
+static void read_general(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  static const char *const biases[] = {"none", "affine", NULL}, *const gains[] = {"fixed", "affine", NULL};
+  static const char *const dynamics[] = {"none", "integrator", "filter", "filterexact", NULL};
+  double gain[10] = {1}, bias[10] = {0}, constants[10] = {1};
+  mjcf_numbers(mjcf, node, "gainprm", 1, 10, gain);
+  mjcf_numbers(mjcf, node, "biasprm", 1, 10, bias);
+  mjcf_numbers(mjcf, node, "dynprm", 1, 10, constants);
+  memcpy(actuator->gain, gain, (mjcf_word(mjcf, node, "gaintype", gains) == 1 ? 3 : 1) * sizeof *gain);
+  if (mjcf_word(mjcf, node, "biastype", biases) == 1) memcpy(actuator->bias, bias, sizeof actuator->bias);
+  size_t kind = mjcf_word(mjcf, node, "dyntype", dynamics);
+  if (kind == 1) actuator->dynamics = INTEGRATOR;
+  if (kind > 1 && constants[0] > 0) set_filter(actuator, constants[0]);
+  else if (kind > 1)
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "the time constant %g of dynprm of <general> is not above 0; expected seconds", constants[0]);
+}
+
+/* The kinds of actuators, with the gain, bias and dynamics that MuJoCo defines for each. */
+static const struct {
+  const char *name;
+  void (*read)(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator);
+} kinds[] = {
+    {"motor", read_motor},       {"position", read_position}, {"velocity", read_velocity},
+    {"general", read_general},   {"damper", read_damper},     {"intvelocity", read_integrated_velocity},
+    {"cylinder", read_cylinder},
+};
+
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static size_t kind_of(xmlNodePtr node) {
+  size_t kind = 0;
+  while (kind < KINDS && !is_element(node, kinds[kind].name)) kind++;
+  return kind;
+}
+
+/* Reports ratios to critical damping, which MuJoCo computes from the inertia of the compiled model. */
+static void reject_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
+  double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
+  if (ratio != 0)
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "dampratio=\"%g\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
+                 "MuJoCo's compiled model",
+                 ratio);
+  if (actuator->bias[2] > 0 && actuator->gain[0] == -actuator->bias[1])
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "
+                 "damping itself with its sign: actuator_biasprm[2] of MuJoCo's compiled model",
+                 (const char *)node->name);
+}
+
+/* Returns the transmission of a tendon, or of the joint that the element names. */
+static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
+  if (tendon != NULL) return tendon->transmission;
+  struct TransmissionTerm *term = allocate(1, sizeof *term);
+  *term = (struct TransmissionTerm){.coefficient = 1};
+  bool is_at_joint = !has_attribute(node, "tendon");
+  if (is_at_joint) term->joint_name = required_attribute(&mjcf->file, node, "joint");
+  return (struct Transmission){.terms = term, .count = is_at_joint};
+}
+
+/*
+ * Limits the control ("ctrl") or activation ("act") of a servo to a fraction of the range of its joint or tendon.
+ * Unknown joints and tendons are reported elsewhere.
+ */
+static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *prefix,
+                          double limits[2]) {
+  double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
+  const char *joint_name = attribute(node, "joint");
+  if (share == 0 || mjcf_is(mjcf, node, format_text("%slimited", prefix), "false")) return;
+  const struct RobotJoint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
+  if (tendon == NULL && joint == NULL) return;
+  double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
+  bool is_known = !isnan(lower) && !isnan(upper);
+  if (!is_known || !isnan(limits[0])) {
+    report_error(mjcf->file.diagnostics, line_of(node), "inheritrange of <%s> is %s %srange%s",
+                 (const char *)node->name,
+                 is_known ? "beside a" : "a share of the range of its joint or tendon, which has none; expected",
+                 prefix, is_known ? "; expected one of them" : "");
+    return;
+  }
+  double middle = (lower + upper) / 2, half = share * (upper - lower) / 2;
+  limits[0] = middle - half;
+  limits[1] = middle + half;
+}
+
+/* Reports a spatial tendon if a joint limits actuator forces, as its force on single joints is not computed. */
+static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
+  const struct Robot *robot = mjcf->file.robot;
+  for (size_t i = 0; i < robot->joint_count && actuator->transmission.site_count > 0; i++)
+    if (!isnan(robot->joints[i]->actuator_limits[0])) {
+      report_error(mjcf->file.diagnostics, line_of(node),
+                   "the actuator '%s' pulls along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
+                   "expected forcerange of the actuators in its place",
+                   actuator->name, robot->joints[i]->name);
+      return;
+    }
+}
+
+void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const char *const rejected[] = {"actdim", "delay", "damping", "armature"};
+  struct Robot *robot = mjcf->file.robot;
+  size_t kind = kind_of(node);
+  if (kind == KINDS) {
+    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint or tendon");
+    return;
+  }
+  const char *tendon_name = attribute(node, "tendon");
+  const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
+  struct Actuator actuator = {
+      .name = attribute(node, "name"), .line = line_of(node), .transmission = transmission_of(mjcf, node, tendon)};
+  if (actuator.name == NULL) actuator.name = attribute(node, has_attribute(node, "tendon") ? "tendon" : "joint");
+  double gear[6] = {1};
+  mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
+  actuator.gear = gear[0];
+  mjcf_check_laws(mjcf, node);
+  kinds[kind].read(mjcf, node, &actuator);
+  reject_ratio(mjcf, node, &actuator);
+  mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
+  mjcf_limits(mjcf, node, "actrange", "actlimited", actuator.activation);
+  if (is_element(node, "position")) inherit_range(mjcf, node, tendon, "ctrl", actuator.control);
+  else if (is_element(node, "intvelocity")) inherit_range(mjcf, node, tendon, "act", actuator.activation);
+  else mjcf_reject(mjcf, node, "inheritrange");
+  mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
+  check_limited_joints(mjcf, node, &actuator);
+  double group = mjcf_number(mjcf, node, "group", 0);
+  if (group >= 0 && group < ACTUATOR_GROUPS && mjcf->is_off[(size_t)group]) {
+    memset(actuator.gain, 0, sizeof actuator.gain);
+    memset(actuator.bias, 0, sizeof actuator.bias);
+    actuator.force[0] = actuator.force[1] = NAN;
+  }
+  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
+  robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
+  robot->actuators[robot->actuator_count++] = actuator;
+}

@@ -1,0 +1,214 @@
+#include "robots/mjcf/mjcf_contacts.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "robots/mjcf/mjcf_tree.h"
+#include "xml/nodes.h"
+
+/* Returns the body of an element: the nearest <body> or <worldbody> outside of <frame>s. */
+static xmlNodePtr body_around(xmlNodePtr node) {
+  while (is_element(node->parent, "frame")) node = node->parent;
+  return node->parent;
+}
+
+static bool has_joint(xmlNodePtr body) {
+  xmlNodePtr node = body->children;
+  while (node != NULL && !is_element(node, "joint") && !is_element(node, "freejoint")) node = node->next;
+  return node != NULL;
+}
+
+/* Returns the nearest body with a joint, from this one outward; the <worldbody> if there is none. */
+static xmlNodePtr moving_body(xmlNodePtr body) {
+  while (!is_element(body, "worldbody") && !has_joint(body)) body = body_around(body);
+  return body;
+}
+
+static char *name_or_nothing(xmlNodePtr node) {
+  char *name = is_element(node, "worldbody") ? copy_text(mjcf_world) : attribute(node, "name");
+  return name != NULL ? name : copy_text("");
+}
+
+void mjcf_read_rule(struct Mjcf *mjcf, xmlNodePtr node) {
+  bool is_pair = is_element(node, "pair");
+  if (!is_pair && !is_element(node, "exclude")) {
+    mjcf_report_unknown(mjcf, node, "a <pair> or <exclude>");
+    return;
+  }
+  struct ContactRule rule = {.node = node, .is_pair = is_pair};
+  for (int i = 0; i < 2; i++)
+    rule.names[i] = required_attribute(&mjcf->file, node, format_text("%s%d", is_pair ? "geom" : "body", i + 1));
+  mjcf->rules = make_room(mjcf->rules, mjcf->rule_count, sizeof *mjcf->rules);
+  mjcf->rules[mjcf->rule_count++] = rule;
+}
+
+struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
+  double friction[3] = {1};
+  mjcf_numbers(mjcf, node, "friction", 1, 3, friction);
+  xmlNodePtr body = body_around(node);
+  struct MjcfContact contact = {.node = node,
+                                .body = body,
+                                .moving = moving_body(body),
+                                .name = name_or_nothing(node),
+                                .body_name = name_or_nothing(body),
+                                .friction = friction[0],
+                                .dimensions = mjcf_number(mjcf, node, "condim", 3),
+                                .priority = mjcf_number(mjcf, node, "priority", 0),
+                                .type = (unsigned)(long)mjcf_number(mjcf, node, "contype", 1),
+                                .affinity = (unsigned)(long)mjcf_number(mjcf, node, "conaffinity", 1)};
+  if (contact.friction < 0)
+    report_error(mjcf->file.diagnostics, line_of(node), "friction=\"%g\" of <%s> is negative; expected 0 or more",
+                 contact.friction, (const char *)node->name);
+  double d = contact.dimensions;
+  if (d != 1 && d != 3 && d != 4 && d != 6)
+    report_error(mjcf->file.diagnostics, line_of(node), "condim=\"%g\" of <%s> is not valid; expected 1, 3, 4 or 6", d,
+                 (const char *)node->name);
+  return contact;
+}
+
+/* Returns the <pair> of two geoms, or the <exclude> of two bodies, in either order; NULL for none. */
+static const struct ContactRule *find_rule(const struct Mjcf *mjcf, bool is_pair, const char *first,
+                                           const char *second) {
+  for (size_t i = 0; i < mjcf->rule_count; i++) {
+    const struct ContactRule *rule = &mjcf->rules[i];
+    const char *a = rule->names[0], *b = rule->names[1];
+    if (rule->is_pair == is_pair &&
+        ((strcmp(first, a) == 0 && strcmp(second, b) == 0) || (strcmp(first, b) == 0 && strcmp(second, a) == 0)))
+      return rule;
+  }
+  return NULL;
+}
+
+static bool is_excluded(const struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
+  return find_rule(mjcf, false, first->body_name, second->body_name) != NULL;
+}
+
+static const struct ContactRule *find_pair(const struct Mjcf *mjcf, const struct MjcfContact *first,
+                                           const struct MjcfContact *second) {
+  return find_rule(mjcf, true, first->name, second->name);
+}
+
+bool mjcf_may_collide(const struct Mjcf *mjcf, const struct MjcfContact *contact) {
+  bool is_in_pair = false;
+  for (size_t i = 0; i < mjcf->rule_count; i++)
+    for (int k = 0; k < 2; k++)
+      is_in_pair |= mjcf->rules[i].is_pair && strcmp(mjcf->rules[i].names[k], contact->name) == 0;
+  return contact->type != 0 || contact->affinity != 0 || is_in_pair;
+}
+
+static bool masks_meet(const struct MjcfContact *first, const struct MjcfContact *second) {
+  return (first->type & second->affinity) != 0 || (second->type & first->affinity) != 0;
+}
+
+/* Returns the friction and dimensions of a pair of geoms: those of higher priority, or else the larger ones. */
+static struct MjcfContact combined(const struct MjcfContact *first, const struct MjcfContact *second) {
+  if (first->priority != second->priority) return first->priority > second->priority ? *first : *second;
+  struct MjcfContact contact = *first;
+  contact.friction = fmax(first->friction, second->friction);
+  contact.dimensions = fmax(first->dimensions, second->dimensions);
+  return contact;
+}
+
+/* Sets the contact of a shape with the file's plane, or by its own attributes if there is no plane. */
+static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Collision *shape) {
+  const struct MjcfContact *ground = mjcf->ground.node != NULL ? &mjcf->ground : NULL;
+  long line = line_of(contact.node);
+  const struct ContactRule *pair = ground != NULL ? find_pair(mjcf, ground, &contact) : NULL;
+  shape->is_clear = mjcf->has_no_contacts;
+  if (ground != NULL && pair == NULL)
+    shape->is_clear |= !masks_meet(ground, &contact) || is_excluded(mjcf, ground, &contact);
+  if (ground != NULL) contact = combined(ground, &contact);
+  if (pair != NULL) {
+    double friction[5] = {contact.friction};
+    mjcf_numbers(mjcf, pair->node, "friction", 1, 5, friction);
+    contact.friction = friction[0];
+    contact.dimensions = mjcf_number(mjcf, pair->node, "condim", contact.dimensions);
+  }
+  shape->friction = contact.dimensions == 1 ? 0 : contact.friction;
+  if (contact.dimensions > 3 && !shape->is_clear)
+    warn_unread(&mjcf->file, line,
+                format_text("the torsional%s friction of condim=\"%g\"", contact.dimensions == 6 ? " and rolling" : "",
+                            contact.dimensions),
+                "condim=\"3\", or a <force> against the spin in a <system> that includes the robot");
+}
+
+void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct Collision *shape) {
+  if (mjcf->file.options->has_ground) meet_ground(mjcf, *contact, shape);
+  mjcf->contacts = make_room(mjcf->contacts, mjcf->contact_count, sizeof *mjcf->contacts);
+  mjcf->contacts[mjcf->contact_count++] = *contact;
+}
+
+static bool is_static(const struct MjcfContact *contact) {
+  return is_element(contact->moving, "worldbody");
+}
+
+/* True if the carrier is the parent of the contact's body: these do not touch, unless the parent is static. */
+static bool is_carried(const struct Mjcf *mjcf, const struct MjcfContact *contact, const struct MjcfContact *carrier) {
+  return !mjcf->touches_parents && !is_static(carrier) && !is_static(contact) &&
+         moving_body(body_around(contact->moving)) == carrier->moving;
+}
+
+/* True if the two geoms can touch in MuJoCo. */
+static bool may_meet(const struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
+  if (find_pair(mjcf, first, second) != NULL) return true;
+  return first->moving != second->moving && masks_meet(first, second) && !is_carried(mjcf, first, second) &&
+         !is_carried(mjcf, second, first) && !is_excluded(mjcf, first, second);
+}
+
+static char *name_of(xmlNodePtr node) {
+  if (is_element(node, "worldbody")) return copy_text("the world");
+  return has_attribute(node, "name") ? format_text("the %s '%s'", (const char *)node->name, attribute(node, "name"))
+                                     : format_text("the %s on line %ld", (const char *)node->name, line_of(node));
+}
+
+/* Warns of pairs of geoms that touch in MuJoCo only, by the first pair. */
+static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second,
+                         size_t count) {
+  const char *others = count > 1 ? format_text(", and %zu other such pair%s", count - 1, count > 2 ? "s" : "") : "";
+  report_warning(mjcf->file.diagnostics, line_of(first->node),
+                 "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected a <contact between=\"...\" "
+                 "and=\"...\"> of shapes that may meet, in a <system> that includes the robot",
+                 name_of(first->node), name_of(first->body), name_of(second->node), name_of(second->body), others);
+}
+
+/* Warns of pairs that can touch: static and moving geoms, or two moving ones. */
+static void check_pairs(struct Mjcf *mjcf, bool with_static) {
+  const struct MjcfContact *found[2] = {NULL};
+  size_t count = 0;
+  for (size_t i = 0; i < mjcf->contact_count; i++)
+    for (size_t j = 0; j < mjcf->contact_count; j++) {
+      const struct MjcfContact *first = &mjcf->contacts[i], *second = &mjcf->contacts[j];
+      bool is_wanted =
+          with_static ? is_static(first) && !is_static(second) : i < j && !is_static(first) && !is_static(second);
+      if (!is_wanted || !may_meet(mjcf, first, second)) continue;
+      if (count++ > 0) continue;
+      found[0] = first;
+      found[1] = second;
+    }
+  if (count > 0) warn_of_pair(mjcf, found[0], found[1], count);
+}
+
+/* Warns of a plane that geoms could touch if the <include> said ground="true", unless it says ground="false". */
+static void check_ground(struct Mjcf *mjcf) {
+  bool is_met = false;
+  if (mjcf->ground.node == NULL || mjcf->file.options->says_ground) return;
+  for (size_t i = 0; i < mjcf->contact_count; i++)
+    is_met |= !is_static(&mjcf->contacts[i]) && may_meet(mjcf, &mjcf->ground, &mjcf->contacts[i]);
+  if (is_met)
+    report_warning(
+        mjcf->file.diagnostics, line_of(mjcf->ground.node),
+        "nothing stands on %s; expected ground=\"true\" in an <include>, or ground=\"false\" if this is meant",
+        name_of(mjcf->ground.node));
+}
+
+void mjcf_check_contacts(struct Mjcf *mjcf) {
+  const struct RobotOptions *options = mjcf->file.options;
+  if (mjcf->has_no_contacts && options->has_ground)
+    report_warning(mjcf->file.diagnostics, mjcf->file.robot->line,
+                   "nothing touches the ground: contact=\"disable\" of <flag>; remove it");
+  if (mjcf->has_no_contacts || (options->says_ground && !options->has_ground)) return;
+  check_ground(mjcf);
+  check_pairs(mjcf, true);
+  check_pairs(mjcf, false);
+}

@@ -1,0 +1,240 @@
+#include "robots/mjcf/mjcf_geoms.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "robots/mjcf/mjcf_contacts.h"
+#include "robots/mjcf/mjcf_meshes.h"
+#include "xml/nodes.h"
+
+static const double usual_density = 1000; /* kg/m3, MuJoCo's default */
+
+enum GeomType { SPHERE, CAPSULE, CYLINDER, BOX, ELLIPSOID, PLANE, MESH, HEIGHT_FIELD, DISTANCES, GEOM_TYPES };
+static const char *const geom_types[GEOM_TYPES + 1] = {"sphere", "capsule", "cylinder", "box", "ellipsoid",
+                                                       "plane",  "mesh",    "hfield",   "sdf", NULL};
+
+/* size: radius and half length of a capsule or cylinder; half extent along each axis of others. */
+struct Geom {
+  enum GeomType type;
+  struct Placement placement;
+  double size[3];
+  const struct MjcfMesh *mesh; /* NULL for other types, and for a shape that MuJoCo would fit to a mesh */
+};
+
+/* Places a geom along z between the points of `fromto`. Boxes and ellipsoids get equal widths in x and y. */
+static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom) {
+  double ends[6], along[3];
+  if (mjcf_numbers(mjcf, node, "fromto", 6, 6, ends) == 0) return;
+  for (int i = 0; i < 3; i++) {
+    geom->placement.translation[i] = (ends[i] + ends[i + 3]) / 2;
+    along[i] = ends[i] - ends[i + 3];
+  }
+  double length = make_unit(along);
+  bool is_round = geom->type == CAPSULE || geom->type == CYLINDER;
+  if (!(length > 0) || (!is_round && geom->type != BOX && geom->type != ELLIPSOID)) {
+    report_error(
+        mjcf->file.diagnostics, line_of(node),
+        "fromto of a <geom> is not valid; expected two different points, of a capsule, cylinder, box or ellipsoid");
+    return;
+  }
+  geom->placement.rotation = rotation_of_z(along);
+  geom->size[is_round ? 1 : 2] = length / 2;
+  if (!is_round) geom->size[1] = geom->size[0];
+}
+
+/* Reads a geom and reports sizes that are missing or not positive. */
+static struct Geom read_geom(struct Mjcf *mjcf, xmlNodePtr node) {
+  static const int needed[GEOM_TYPES] = {[SPHERE] = 1, [CAPSULE] = 2, [CYLINDER] = 2, [BOX] = 3, [ELLIPSOID] = 3};
+  struct Geom geom = {.type = (enum GeomType)mjcf_word(mjcf, node, "type", geom_types)};
+  const char *mesh = mjcf_text(mjcf, node, "mesh");
+  if (mesh != NULL && geom.type == MESH) geom.mesh = mjcf_mesh(mjcf, node, mesh);
+  if (mesh != NULL) geom.type = MESH;
+  geom.placement = mjcf_placement(mjcf, node);
+  int errors = mjcf->file.diagnostics->errors;
+  if (needed[geom.type] > 0) mjcf_numbers(mjcf, node, "size", 1, 3, geom.size);
+  place_between(mjcf, node, &geom);
+  for (int i = 0; i < needed[geom.type] && mjcf->file.diagnostics->errors == errors; i++)
+    if (!(geom.size[i] > 0))
+      report_error(mjcf->file.diagnostics, line_of(node), "a <geom> of type %s has a size of %g; expected %d above 0",
+                   geom_types[geom.type], geom.size[i], needed[geom.type]);
+  return geom;
+}
+
+static double volume(const struct Geom *geom) {
+  const double *s = geom->size;
+  switch (geom->type) {
+  case SPHERE: return 4 * M_PI / 3 * s[0] * s[0] * s[0];
+  case CAPSULE: return M_PI * s[0] * s[0] * (4 * s[0] / 3 + 2 * s[1]);
+  case CYLINDER: return M_PI * s[0] * s[0] * 2 * s[1];
+  case BOX: return 8 * s[0] * s[1] * s[2];
+  case ELLIPSOID: return 4 * M_PI / 3 * s[0] * s[1] * s[2];
+  default: return 0;
+  }
+}
+
+/*
+ * Sets the principal moments of a solid capsule: a cylinder, and two hemispheres, whose centres of mass are 3/8 of the
+ * radius beyond its ends.
+ */
+static void capsule_moments(double mass, const double *size, double moments[3]) {
+  double r = size[0], h = size[1], ball = mass * (4 * r / 3) / (4 * r / 3 + 2 * h), rod = mass - ball;
+  moments[2] = rod * r * r / 2 + 2 * ball * r * r / 5;
+  moments[0] = moments[1] = rod * (3 * r * r + 4 * h * h) / 12 + ball * (2 * r * r / 5 + h * h + 3 * h * r / 4);
+}
+
+static struct RigidBody solid(const struct Geom *geom, double mass) {
+  const double *s = geom->size;
+  double moments[3] = {0};
+  if (geom->type == CAPSULE) capsule_moments(mass, s, moments);
+  for (int i = 0; i < 3; i++) {
+    double a = s[(i + 1) % 3], b = s[(i + 2) % 3];
+    if (geom->type == SPHERE) moments[i] = 2 * mass * s[0] * s[0] / 5;
+    else if (geom->type == BOX) moments[i] = mass * (a * a + b * b) / 3;
+    else if (geom->type == ELLIPSOID) moments[i] = mass * (a * a + b * b) / 5;
+    else if (geom->type == CYLINDER)
+      moments[i] = i == 2 ? mass * s[0] * s[0] / 2 : mass * (3 * s[0] * s[0] + 4 * s[1] * s[1]) / 12;
+  }
+  struct RigidBody body = {.mass = mass};
+  for (int i = 0; i < 3; i++) body.tensor.at[i][i] = moments[i];
+  return body_seen_from(&geom->placement, &body);
+}
+
+/* Returns the inertia of a geom. Reports geoms with a mass whose shape is not supported. */
+static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom) {
+  bool has_mass = mjcf_text(mjcf, node, "mass") != NULL;
+  double density = mjcf_number_not_negative(mjcf, node, "density", usual_density);
+  double mass = has_mass ? mjcf_number_not_negative(mjcf, node, "mass", 0) : density * volume(geom);
+  bool is_solid = geom->type <= ELLIPSOID, has_problem = geom->mesh != NULL && geom->mesh->problem != NULL;
+  mjcf_reject(mjcf, node, "shellinertia");
+  if (geom->mesh != NULL && geom->mesh->is_weighed) {
+    struct RigidBody body = body_scaled(&geom->mesh->body, has_mass ? mass / geom->mesh->body.mass : density);
+    return body_seen_from(&geom->placement, &body);
+  }
+  if (!is_solid && geom->type != PLANE && (has_mass ? mass : density) > 0)
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "the inertia of a <geom> of type %s is not known%s%s; expected an <inertial> in its body, as MuJoCo's "
+                 "mj_saveLastXML writes it, or mass=\"0\"",
+                 geom_types[geom->type], has_problem ? ": " : "", has_problem ? geom->mesh->problem : "");
+  return is_solid ? solid(geom, mass) : (struct RigidBody){.mass = 0};
+}
+
+/* Returns the color of the geom or of its material; NULL for none. */
+static char *read_color(struct Mjcf *mjcf, xmlNodePtr node) {
+  const char *name = mjcf_text(mjcf, node, "material");
+  double rgba[4];
+  if (mjcf_numbers(mjcf, node, "rgba", 4, 4, rgba) > 0) return color_text(rgba);
+  for (xmlNodePtr section = mjcf->root->children; section != NULL && name != NULL; section = section->next)
+    for (xmlNodePtr asset = is_element(section, "asset") ? section->children : NULL; asset != NULL; asset = asset->next)
+      if (is_element(asset, "material") && attribute_is(asset, "name", name) &&
+          mjcf_numbers(mjcf, asset, "rgba", 4, 4, rgba) > 0)
+        return color_text(rgba);
+  return NULL;
+}
+
+/* Returns why the geom cannot be a shape; NULL if it can. */
+static const char *problem_of(const struct Geom *geom, bool touches) {
+  if (geom->type <= ELLIPSOID) return NULL;
+  if (geom->type != MESH || geom->mesh == NULL) return "expected a sphere, capsule, cylinder, box, ellipsoid or mesh";
+  if (touches && geom->mesh->problem == NULL && geom->mesh->is_flat) return "its mesh is flat; expected a volume";
+  return geom->mesh->problem;
+}
+
+static struct Collision shape_of(const struct Geom *geom, long line) {
+  struct Collision shape = {.type = geom_types[geom->type], .placement = geom->placement, .line = line};
+  if (geom->type == MESH) {
+    shape.file = geom->mesh->path;
+    memcpy(shape.scale, geom->mesh->scale, sizeof shape.scale);
+  } else if (geom->type == BOX || geom->type == ELLIPSOID)
+    for (int i = 0; i < 3; i++) shape.size[i] = 2 * geom->size[i];
+  else shape.radius = geom->size[0];
+  if (geom->type == CAPSULE || geom->type == CYLINDER) shape.length = 2 * geom->size[1];
+  return shape;
+}
+
+/* Makes the first plane of the world the ground. Other planes touch nothing. */
+static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, const struct Geom *geom,
+                      const struct RobotLink *link) {
+  struct Robot *robot = mjcf->file.robot;
+  bool is_of_world = link == robot->links[0];
+  if (is_of_world && robot->ground == NULL) {
+    robot->ground = allocate(1, sizeof *robot->ground);
+    robot->ground->placement = geom->placement;
+    mjcf->ground = *contact;
+  } else if (mjcf->file.options->has_ground)
+    report_warning(mjcf->file.diagnostics, line_of(contact->node),
+                   "a <geom> of type plane of the body '%s' touches nothing; expected %s", link->name,
+                   is_of_world ? "one plane, which is the ground"
+                               : "it in the <worldbody>, of which one is the ground");
+}
+
+/* Adds a geom that can touch to the collisions, any other to the visuals. */
+static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geom, struct RobotLink *link) {
+  struct MjcfContact contact = mjcf_contact(mjcf, node);
+  bool touches = mjcf_may_collide(mjcf, &contact);
+  bool meets_ground = touches && link_touches_ground(mjcf->file.options, link->name);
+  const char *problem = problem_of(geom, meets_ground);
+  if (geom->type == PLANE) {
+    if (touches) add_plane(mjcf, &contact, geom, link);
+    return;
+  }
+  if (problem != NULL && meets_ground)
+    report_warning(mjcf->file.diagnostics, line_of(node), "a <geom> of type %s of the body '%s' touches nothing: %s",
+                   geom_types[geom->type], link->name, problem);
+  else if (problem != NULL && geom->type == MESH && geom->mesh != NULL)
+    note_mesh_problem(&mjcf->file, geom->mesh->problem);
+  else if (problem != NULL)
+    leave_out(&mjcf->file, "geoms other than sphere, capsule, cylinder, box, ellipsoid and mesh");
+  if (problem != NULL) return;
+  struct Collision shape = shape_of(geom, line_of(node));
+  shape.color = read_color(mjcf, node);
+  if (touches) mjcf_set_contact(mjcf, &contact, &shape);
+  struct Collision **shapes = touches ? &link->collisions : &link->visuals;
+  size_t *count = touches ? &link->collision_count : &link->visual_count;
+  *shapes = make_room(*shapes, *count, sizeof **shapes);
+  (*shapes)[(*count)++] = shape;
+}
+
+static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {
+  static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
+  struct Placement placement = mjcf_placement(mjcf, node);
+  struct RigidBody body = {.mass = mjcf_number_not_negative(mjcf, node, "mass", 0)};
+  double moments[6] = {0};
+  bool is_full = mjcf_numbers(mjcf, node, "fullinertia", 6, 6, moments) > 0;
+  if (!is_full) mjcf_numbers(mjcf, node, "diaginertia", 3, 3, moments);
+  else if (has_attribute(node, "diaginertia"))
+    report_error(mjcf->file.diagnostics, line_of(node),
+                 "<inertial> has diaginertia and fullinertia; expected one of them");
+  required_attribute(&mjcf->file, node, "mass");
+  for (int i = 0; i < 6; i++) body.tensor.at[row[i]][column[i]] = body.tensor.at[column[i]][row[i]] = moments[i];
+  link->body = body_seen_from(&placement, &body);
+}
+
+/* Reads the geoms of a body, and those in its <frame>s, which transform them. */
+static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placement *outer, bool weighs,
+                       struct RobotLink *link) {
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+    if (is_element(child, "frame")) {
+      struct Placement inner = mjcf_placement(mjcf, child);
+      inner = placement_within(outer, &inner);
+      read_geoms(mjcf, child, &inner, weighs, link);
+    }
+    if (!is_element(child, "geom")) continue;
+    struct Geom geom = read_geom(mjcf, child);
+    geom.placement = placement_within(outer, &geom.placement);
+    double group = mjcf_number(mjcf, child, "group", 0);
+    if (weighs && group >= mjcf->inertia_groups[0] && group <= mjcf->inertia_groups[1]) {
+      struct RigidBody part = weigh(mjcf, child, &geom);
+      link->body = body_joined(&link->body, &part);
+    }
+    add_shape(mjcf, child, &geom, link);
+  }
+}
+
+void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {
+  bool is_world = is_element(node, "worldbody");
+  xmlNodePtr inertial = child_of(&mjcf->file, node, "inertial");
+  bool has_own = inertial != NULL && mjcf->inertia_from_geoms != ALWAYS;
+  if (has_own) read_inertial(mjcf, inertial, link);
+  read_geoms(mjcf, node, &no_displacement, !is_world && !has_own && mjcf->inertia_from_geoms != NEVER, link);
+}

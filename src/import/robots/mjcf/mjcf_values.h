@@ -1,0 +1,100 @@
+/* Values of MJCF attributes, from elements or their default classes: words, numbers and placements. */
+#pragma once
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "names/names.h"
+#include "robots/description/robot_file.h"
+
+/* MuJoCo's groups 0 to 30 of actuators. */
+enum { ACTUATOR_GROUPS = 31 };
+
+enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
+
+/* Contact attributes of a geom. */
+struct MjcfContact {
+  xmlNodePtr node, body, moving; /* geom, or NULL; its body; nearest body with a joint, else <worldbody> */
+  char *name, *body_name;        /* "" for none */
+  double friction;               /* coefficient of sliding friction */
+  double dimensions; /* condim: 1 without friction, 3 with sliding friction, 4 also torsional, 6 also rolling */
+  double priority;
+  unsigned type, affinity; /* bit masks: two geoms touch if one's type and the other's affinity have a common bit */
+};
+
+/* A <pair> of geoms that touch, or an <exclude> of bodies that do not. */
+struct ContactRule {
+  xmlNodePtr node;
+  char *names[2];
+  bool is_pair;
+};
+
+/* An MJCF file while it is read. */
+struct Mjcf {
+  struct RobotFile file;
+  xmlNodePtr root;
+  double angle; /* rad per unit of angles in the file */
+  const char *euler_sequence;
+  bool has_automatic_limits;
+  enum InertiaFromGeoms inertia_from_geoms;
+  double inertia_groups[2];             /* geoms of groups in this range have a mass */
+  double total_mass;                    /* kg; of all bodies together; -1 for the sum in the file */
+  size_t unnamed_count;                 /* number of bodies without a name so far */
+  char *mesh_folder;                    /* folder of mesh files, relative to the robot's file; NULL for its own */
+  struct Names *meshes;                 /* used meshes by name -> struct MjcfMesh */
+  struct MjcfContact ground, *contacts; /* of the ground plane, and of all other geoms that touch */
+  struct ContactRule *rules;
+  size_t contact_count, rule_count;
+  bool has_no_contacts, touches_parents; /* set by <flag> */
+  bool is_off[ACTUATOR_GROUPS];          /* disabled groups of actuators */
+  struct Names *bodies;                  /* names of bodies */
+  struct Names *placements; /* bodies and sites -> struct Placement in the world, with all joints at their ref */
+};
+
+/* Returns an attribute of the element or of its classes, innermost first; NULL if none has it. */
+const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
+
+/* Reports an actuator whose gain and bias MuJoCo would take from <default>s of another kind. */
+void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node);
+
+/* Reports classes that are undefined or defined twice, in an element and its descendants. */
+void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node);
+
+/*
+ * Reads least to most numbers and returns their count. If the attribute is missing, or after reporting an error,
+ * returns 0 and keeps the values.
+ */
+size_t mjcf_numbers(struct Mjcf *mjcf, xmlNodePtr node, const char *name, size_t least, size_t most, double *values);
+
+/* Returns a number; usual if the attribute is missing. */
+double mjcf_number(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual);
+
+/* Like mjcf_number(), but reports negative numbers. */
+double mjcf_number_not_negative(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual);
+
+/* True if the attribute of an element, or of its default class, has this value. */
+bool mjcf_is(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *value);
+
+/* Returns the index of the value among the words, which end with NULL; 0 if it is missing. Reports others. */
+size_t mjcf_word(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *const *words);
+
+/* Returns the placement by pos and one of quat, axisangle, euler, xyaxes, zaxis. */
+struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node);
+
+/* Returns the shortest rotation that takes z to this direction, which is not 0. */
+struct Matrix3 rotation_of_z(const double direction[3]);
+
+/* Returns the rotation by a quaternion of any nonzero norm, the real part first. */
+struct Matrix3 rotation_of_quaternion(const double q[4]);
+
+/* Normalizes a vector and returns its length; keeps a zero vector. */
+double make_unit(double vector[3]);
+
+/* Sets the limits of `range`, if the attribute `is_limited` or its default says that they apply; else NAN. */
+void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const char *is_limited, double limits[2]);
+
+/* Reports an element that is not supported and would change the motion. remedy: completes "expected ...". */
+void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy);
+
+/* Reports an attribute that is not supported and would change the motion, unless it is 0, false, none or missing. */
+void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name);

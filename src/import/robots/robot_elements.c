@@ -1,0 +1,114 @@
+#include "robots/robot_elements.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "algebra/formula.h"
+#include "base/memory.h"
+#include "xml/lines.h"
+
+xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name) {
+  xmlNodePtr node = xmlNewChild(parent, NULL, (const xmlChar *)name, NULL);
+  set_line(node, writer->line);
+  return node;
+}
+
+xmlNodePtr write_element(const struct Writer *writer, const char *name) {
+  return write_element_in(writer, writer->system, name);
+}
+
+void set_attribute(xmlNodePtr node, const char *attribute, char *value) {
+  xmlNewProp(node, (const xmlChar *)attribute, (const xmlChar *)value);
+}
+
+void set_content(xmlNodePtr node, char *text) {
+  xmlNodeAddContent(node, (const xmlChar *)text);
+}
+
+void set_number(xmlNodePtr node, const char *attribute, double value) {
+  if (value != 0) set_attribute(node, attribute, number(value));
+}
+
+xmlNodePtr write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description) {
+  xmlNodePtr parameter = write_element(writer, "parameter");
+  set_attribute(parameter, "name", name);
+  set_attribute(parameter, "start", number(value));
+  set_attribute(parameter, "unit", copy_text(unit));
+  set_attribute(parameter, "description", description);
+  return parameter;
+}
+
+void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description) {
+  xmlNodePtr output = write_element(writer, "output");
+  set_attribute(output, "name", name);
+  set_attribute(output, "unit", copy_text(unit));
+  set_attribute(output, "description", description);
+  set_content(output, expression);
+}
+
+xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description) {
+  xmlNodePtr coordinate = write_element(writer, "coordinate");
+  set_attribute(coordinate, "name", copy_text(name));
+  set_attribute(coordinate, "velocity", format_text("%s_velocity", name));
+  set_attribute(coordinate, "unit", copy_text(unit));
+  set_attribute(coordinate, "description", copy_text(description));
+  return coordinate;
+}
+
+xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char *unit, double effort,
+                       const char *description) {
+  bool is_length = strcmp(unit, "m") == 0;
+  const char *kind = is_length ? "force" : "torque", *unit_of_effort = is_length ? "N" : "N.m";
+  xmlNodePtr coordinate = write_coordinate(writer, name, unit, description);
+  char *wanted = format_text("%s_%s", name, kind);
+  if (!isnan(effort))
+    set_attribute(write_parameter(writer, format_text("%s_effort", name), effort, unit_of_effort,
+                                  format_text("largest %s along %s", kind, name)),
+                  "min", number(0));
+  xmlNodePtr input = write_element(writer, "input"), force = write_element(writer, "force");
+  set_attribute(input, "name", wanted);
+  set_attribute(input, "unit", copy_text(unit_of_effort));
+  set_attribute(input, "description", format_text("%s along %s", kind, name));
+  set_attribute(force, "coordinate", copy_text(name));
+  set_content(force, isnan(effort) ? copy_text(wanted)
+                                   : format_text("max(-%s_effort, min(%s_effort, %s))", name, name, wanted));
+  return coordinate;
+}
+
+void write_excess_of_limits(const struct Writer *writer, const char *name, const char *unit, const char *lower,
+                            const char *upper) {
+  write_output(writer, format_text("%s_beyond", name), unit,
+               format_text("max(0, %s - (%s)) + min(0, %s - (%s))", name, upper, name, lower),
+               format_text("%s less its limits, %s and %s, where it is beyond them", name, lower, upper));
+}
+
+void write_end_contacts(const struct Writer *writer, const char *name, const char *unit, const char *position,
+                        const char *lower, const char *upper) {
+  for (int end = 0; end < 2; end++) {
+    xmlNodePtr contact = write_element(writer, "contact");
+    set_attribute(contact, "name", format_text("%s_%s", name, end == 0 ? "min" : "max"));
+    set_attribute(contact, "unit", copy_text(unit));
+    set_attribute(contact, "gap",
+                  end == 0 ? format_text("%s - (%s)", position, lower) : format_text("%s - %s", upper, position));
+  }
+}
+
+char *number(double value) {
+  char text[NUMBER_LENGTH];
+  number_text(value, text);
+  return copy_text(text);
+}
+
+char *clamped(const double limits[2], char *expression) {
+  if (isnan(limits[0])) return expression;
+  char *lower = number(limits[0]), *upper = number(limits[1]);
+  return format_text("max(%s, min(%s, %s))", lower, upper, expression);
+}
+
+char *term(double factor, const char *name) {
+  if (factor == 1) return copy_text(name);
+  if (factor == -1) return format_text("-%s", name);
+  char *text = number(factor), *product = format_text("%s*%s", text, name);
+  return product;
+}

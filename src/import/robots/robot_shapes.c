@@ -1,0 +1,131 @@
+#include "robots/robot_shapes.h"
+
+#include <math.h>
+
+#include "base/memory.h"
+#include "model/kinematics.h"
+#include "robots/description/robot_file.h"
+#include "robots/robot_tree.h"
+
+static const char ground[] = "ground";
+
+/*
+ * m: depth at which a single contact point bears the whole weight, which sets the stiffness. s/m: damping. Coefficient
+ * of friction, if the file gives none.
+ */
+static const double sinking = 1e-3, usual_damping = 2.0, usual_friction = 0.8;
+
+/* m/s^2: gravitational acceleration that sets the stiffness of a robot without weight. */
+static const double usual_gravity = 9.81;
+
+static void place_element(xmlNodePtr shape, const struct Placement *placement) {
+  static const char *const names[] = {"roll", "pitch", "yaw"};
+  double angles[3];
+  placement_angles(placement, angles);
+  for (int axis = 0; axis < 3; axis++) {
+    set_number(shape, axes[axis], placement->translation[axis]);
+    set_number(shape, names[axis], angles[axis]);
+  }
+}
+
+/* Returns the coefficient of friction of a shape on the ground. */
+static double friction_of(const struct Collision *shape) {
+  return isnan(shape->friction) ? usual_friction : shape->friction;
+}
+
+/* True if the shape touches the ground, provided that its link moves. */
+static bool meets_ground(const struct RobotOptions *options, const struct RobotLink *link,
+                         const struct Collision *shape) {
+  return !shape->is_clear && link_touches_ground(options, link->name);
+}
+
+/* Returns the coefficient of friction of all shapes on the ground; NAN if they differ. */
+static double common_friction(const struct Robot *robot, const struct RobotOptions *options) {
+  double common = usual_friction;
+  bool is_first = true;
+  for (size_t i = 0; i < robot->link_count; i++) {
+    const struct RobotLink *link = robot->links[i];
+    for (size_t j = 0; j < link->collision_count; j++) {
+      if (!carrier_moves(link, options->floats) || !meets_ground(options, link, &link->collisions[j])) continue;
+      double friction = friction_of(&link->collisions[j]);
+      if (!is_first && friction != common) return NAN;
+      common = friction;
+      is_first = false;
+    }
+  }
+  return common;
+}
+
+static void write_friction(struct Writer *writer, const struct Robot *robot) {
+  double common = common_friction(robot, writer->options);
+  writer->has_own_frictions = isnan(common);
+  write_parameter(writer, copy_text("ground_friction"), writer->has_own_frictions ? -1 : common, "1",
+                  copy_text(writer->has_own_frictions
+                                ? "coefficient of friction of all shapes; below 0, each has that of the file"
+                                : "coefficient of friction"));
+}
+
+void write_ground(struct Writer *writer, const struct Robot *robot) {
+  double mass = 0.0;
+  for (size_t i = 0; i < robot->link_count; i++) mass += robot->links[i]->body.mass;
+  double gravity = robot_gravity(robot);
+  double stiffness = fmax(mass, 1e-3) * (gravity > 0.0 ? gravity : usual_gravity) / sinking;
+  if (stiffness > 1.0) stiffness = floor(stiffness);
+  writer->line = robot->line;
+  write_parameter(writer, copy_text("ground_stiffness"), stiffness, "N/m",
+                  copy_text("force by depth at each point that touches"));
+  write_parameter(writer, copy_text("ground_damping"), usual_damping, "s/m",
+                  copy_text("by which the force grows with the speed"));
+  write_friction(writer, robot);
+  xmlNodePtr plane = write_element(writer, "shape");
+  set_attribute(plane, "name", copy_text(ground));
+  set_attribute(plane, "type", copy_text("plane"));
+  if (robot->ground != NULL) place_element(plane, &robot->ground->placement);
+}
+
+static void write_contact(const struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,
+                          const char *shape, size_t index) {
+  xmlNodePtr contact = write_element(writer, "contact");
+  set_attribute(contact, "name", format_text("%s_%s%zu", link->symbol, ground, index));
+  set_attribute(contact, "between", copy_text(shape));
+  set_attribute(contact, "and", copy_text(ground));
+  set_attribute(contact, "stiffness", copy_text("ground_stiffness"));
+  set_attribute(contact, "damping", copy_text("ground_damping"));
+  set_attribute(contact, "friction",
+                writer->has_own_frictions
+                    ? format_text("if(ground_friction < 0, %s, ground_friction)", number(friction_of(collision)))
+                    : copy_text("ground_friction"));
+}
+
+static xmlNodePtr write_shape(struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,
+                              char *name) {
+  static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"};
+  const double *scale = collision->scale;
+  writer->line = collision->line;
+  xmlNodePtr shape = write_element(writer, "shape");
+  set_attribute(shape, "name", name);
+  set_attribute(shape, "in", copy_text(link->symbol));
+  set_attribute(shape, "type", copy_text(collision->type));
+  place_element(shape, &collision->placement);
+  for (int axis = 0; axis < 3; axis++) set_number(shape, sizes[axis], collision->size[axis]);
+  set_number(shape, "radius", collision->radius);
+  set_number(shape, "length", collision->length);
+  if (collision->color != NULL) set_attribute(shape, "color", copy_text(collision->color));
+  if (collision->file == NULL) return shape;
+  char *x = number(scale[0]), *y = number(scale[1]), *z = number(scale[2]);
+  set_attribute(shape, "file", copy_text(collision->file));
+  set_attribute(shape, "scale", format_text("%s %s %s", x, y, z));
+  return shape;
+}
+
+void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves) {
+  for (size_t i = 0; i < link->collision_count; i++) {
+    char *name = format_text("%s_collision%zu", link->symbol, i + 1);
+    xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
+    if (link->visual_count > 0) set_attribute(shape, "drawn", copy_text("false"));
+    if (moves && meets_ground(writer->options, link, &link->collisions[i]))
+      write_contact(writer, link, &link->collisions[i], name, i + 1);
+  }
+  for (size_t i = 0; i < link->visual_count; i++)
+    write_shape(writer, link, &link->visuals[i], format_text("%s_visual%zu", link->symbol, i + 1));
+}

@@ -1,0 +1,13 @@
+/* Converts <collision>s and <visual>s of a robot to shapes, and writes the ground and contacts with it. */
+#pragma once
+
+#include "robots/robot_elements.h"
+
+/* Writes the plane z = 0, or that of the file, and the parameters of contacts with it. */
+void write_ground(struct Writer *writer, const struct Robot *robot);
+
+/*
+ * Writes the shapes LINK_collision1, ... and LINK_visual1, ... of a link. If the link moves and there is a ground, also
+ * writes the contacts LINK_ground1, ... of the former.
+ */
+void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves);

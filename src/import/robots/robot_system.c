@@ -1,0 +1,328 @@
+/*
+ * Conversion of a robot to a system.
+ *
+ *  1. urdf_read() or mjcf_read() reads the file into a struct Robot: links, joints, tendons, actuators and loops.
+ *  2. robot_connect() makes a kinematic tree of it. Links that are fixed to each other become one body.
+ *  3. Each movable joint becomes one or more <coordinate>s with inputs, friction, springs and limits.
+ *  4. Each link becomes a <frame> in the frame of the link that carries its parent. Its pose is the constant placement
+ * of the joint followed by the joint's motion. A movable link also gets a <body> with the inertia of all links fixed to
+ * it.
+ *  5. Tendons, actuators, loops and the tool follow as forces, constraints and outputs.
+ *
+ * The result is validated against the schema and read like any system. Its elements have the lines of the robot file,
+ * so that messages refer to that. In joint coordinates only loops, quaternions and coupled tendons need constraints.
+ * The cost is linear in the numbers of links and joints, except for pairs of geoms and some searches by name in MJCF.
+ *
+ * R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 4.
+ */
+#include "robots/robot_system.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "model/kinematics.h"
+#include "robots/description/robot_file.h"
+#include "robots/mjcf/mjcf.h"
+#include "robots/robot_elements.h"
+#include "robots/robot_joint.h"
+#include "robots/robot_shapes.h"
+#include "robots/robot_tendon.h"
+#include "robots/robot_transmission.h"
+#include "robots/robot_tree.h"
+#include "robots/urdf.h"
+#include "xml/nodes.h"
+#include "xml/schema.h"
+
+/* Names of a floating base, and of the point at the tool. */
+static const char base[] = "base", tool[] = "tool";
+
+static const struct JointStart no_start = {.position = {[3] = 1}};
+
+static void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement) {
+  const double *shift = placement->translation;
+  double angles[3];
+  placement_angles(placement, angles);
+  xmlNodePtr translation =
+      shift[0] != 0 || shift[1] != 0 || shift[2] != 0 ? write_element_in(writer, frame, "translate") : NULL;
+  for (int i = 0; i < 3 && translation != NULL; i++) set_number(translation, axes[i], shift[i]);
+  for (int i = 2; i >= 0; i--) {
+    if (angles[i] == 0) continue;
+    xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
+    set_attribute(rotation, "axis", copy_text(axes[i]));
+    set_number(rotation, "angle", angles[i]);
+  }
+}
+
+/* Writes all links that are fixed to this one, and itself, as one body. */
+static void write_body(const struct Writer *writer, const struct RobotLink *link) {
+  static const char *const moments[3][3] = {{"Ixx", "Ixy", "Ixz"}, {NULL, "Iyy", "Iyz"}, {NULL, NULL, "Izz"}};
+  const struct RigidBody *body = &link->carried;
+  if (!body_has_inertia(body)) return;
+  xmlNodePtr node = write_element(writer, "body");
+  set_attribute(node, "name", format_text("%s_body", link->symbol));
+  set_attribute(node, "in", copy_text(link->symbol));
+  set_attribute(node, "mass", number(body->mass));
+  for (int i = 0; i < 3; i++) set_number(node, axes[i], body->center[i]);
+  for (int i = 0; i < 3; i++)
+    for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
+}
+
+/* Writes the coordinates, frame, body and shapes of a link; the frame is in that of the parent's carrier. */
+static void write_link(struct Writer *writer, const struct RobotLink *link) {
+  bool floats = writer->options->floats;
+  const struct RobotJoint *joint = link->joint;
+  bool moves = joint_moves(joint);
+  if (moves) {
+    writer->line = joint->line;
+    write_joint(writer, joint);
+  }
+  writer->line = link->line;
+  if (joint == NULL && floats) write_free_coordinates(writer, base, &no_start, "free motion of the base");
+  xmlNodePtr frame = write_element(writer, "frame");
+  set_attribute(frame, "name", copy_text(link->symbol));
+  if (joint != NULL) {
+    const struct RobotLink *parent = joint->parent;
+    struct Placement placement = placement_within(&parent->placement, &joint->origin);
+    set_attribute(frame, "in", copy_text(parent->carrier->symbol));
+    write_placement(writer, frame, &placement);
+    write_motion(writer, frame, joint);
+  } else if (floats) write_free_motion(writer, frame, base);
+  if (moves || (joint == NULL && floats)) write_body(writer, link);
+  write_shapes(writer, link, carrier_moves(link, floats));
+}
+
+/* Returns the leaf of the tree if there is only one; NULL otherwise. */
+static const struct RobotLink *only_end(const struct Robot *robot) {
+  const struct RobotLink *end = NULL;
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) {
+    if (link->first_child != NULL) continue;
+    if (end != NULL) return NULL;
+    end = link;
+  }
+  return end;
+}
+
+static void write_tool(struct Writer *writer, const struct RobotLink *link) {
+  writer->line = link->line;
+  xmlNodePtr point = write_element(writer, "point");
+  set_attribute(point, "name", copy_text(tool));
+  set_attribute(point, "in", copy_text(link->symbol));
+  for (int i = 0; i < 3; i++)
+    write_output(writer, format_text("%s_%s", tool, axes[i]), "m", format_text("%s.%s", tool, axes[i]),
+                 format_text("position of '%s' along %s", link->name, axes[i]));
+  for (int i = 0; i < 3; i++)
+    write_output(writer, format_text("%s_v%s", tool, axes[i]), "m/s", format_text("%s.v%s", tool, axes[i]),
+                 format_text("velocity of '%s' along %s", link->name, axes[i]));
+}
+
+/* True if dampers, springs or regularized friction may make the robot stiff. */
+static bool has_losses(const struct Robot *robot, const struct RobotOptions *options) {
+  for (size_t i = 0; i < robot->joint_count; i++)
+    if (robot->joints[i]->damping > 0 || robot->joints[i]->stiffness > 0 ||
+        (robot->joints[i]->friction > 0 && !options->sticks))
+      return true;
+  for (size_t i = 0; i < robot->tendon_count; i++)
+    if (robot->tendons[i].damping > 0 || robot->tendons[i].stiffness > 0 ||
+        (robot->tendons[i].friction > 0 && !options->sticks))
+      return true;
+  for (size_t i = 0; i < robot->actuator_count; i++)
+    if (robot->actuators[i].bias[1] != 0 || robot->actuators[i].bias[2] != 0) return true;
+  return false;
+}
+
+static void write_gravity(const struct Writer *writer, const struct Robot *robot) {
+  const double *gravity = robot->gravity;
+  double size = robot_gravity(robot);
+  bool is_down = gravity[0] == 0 && gravity[1] == 0 && gravity[2] <= 0;
+  write_parameter(writer, copy_text("g"), size, "m/s2",
+                  copy_text(is_down ? "gravitational acceleration, along -z" : "gravitational acceleration"));
+  xmlNodePtr node = write_element(writer, "gravity");
+  if (is_down) set_attribute(node, "z", copy_text("-g"));
+  for (int i = 0; i < 3 && !is_down; i++)
+    if (gravity[i] != 0) set_attribute(node, axes[i], term(gravity[i] / size, "g"));
+}
+
+/* Writes the force that balances a share of a link's weight, as a potential at its centre of mass. */
+static void write_balance(struct Writer *writer, const struct Robot *robot, const struct RobotLink *link) {
+  double share = link->weightless * link->body.mass, size = robot_gravity(robot);
+  if (share == 0 || size == 0 || !carrier_moves(link, writer->options->floats)) return;
+  writer->line = link->line;
+  char *name = format_text("%s_balance", link->symbol), *height = copy_text("");
+  xmlNodePtr point = write_element(writer, "point");
+  set_attribute(point, "name", name);
+  set_attribute(point, "in", copy_text(link->symbol));
+  for (int i = 0; i < 3; i++) set_number(point, axes[i], link->body.center[i]);
+  for (int i = 0; i < 3; i++)
+    if (robot->gravity[i] != 0)
+      height = format_text("%s%s%s*%s.%s", height, *height != '\0' ? " + " : "", number(robot->gravity[i] / size), name,
+                           axes[i]);
+  write_parameter(writer, format_text("%s_mass", name), share, "kg",
+                  format_text("mass of '%s' whose weight is balanced", link->name));
+  set_content(write_element(writer, "potential"), format_text("%s_mass*g*(%s)", name, height));
+}
+
+static void write_loop(struct Writer *writer, const struct RobotLoop *loop) {
+  writer->line = loop->line;
+  xmlNodePtr joint = write_element(writer, "joint");
+  set_attribute(joint, "name", robot_symbol(loop->name));
+  set_attribute(joint, "type", copy_text(loop->is_fixed ? "fixed" : "spherical"));
+  set_attribute(joint, "from", copy_text(loop->links[0]->symbol));
+  set_attribute(joint, "to", copy_text(loop->links[1]->symbol));
+}
+
+static void write_robot(struct Writer *writer, const struct Robot *robot, const struct RobotLink *end) {
+  set_attribute(writer->system, "name", robot_symbol(robot->name));
+  set_attribute(writer->system, "description", format_text("robot '%s'", robot->name));
+  write_gravity(writer, robot);
+  write_friction_parameters(writer, robot);
+  if (writer->options->has_ground) write_ground(writer, robot);
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_balance(writer, robot, link);
+  for (size_t i = 0; i < robot->tendon_count; i++) {
+    writer->line = robot->tendons[i].line;
+    write_tendon(writer, &robot->tendons[i]);
+  }
+  for (size_t i = 0; i < robot->actuator_count; i++) {
+    writer->line = robot->actuators[i].line;
+    write_actuator(writer, &robot->actuators[i]);
+  }
+  for (size_t i = 0; i < robot->joint_count; i++) {
+    writer->line = robot->joints[i]->line;
+    write_limited_forces(writer, robot->joints[i]);
+  }
+  for (size_t i = 0; i < robot->loop_count; i++) write_loop(writer, &robot->loops[i]);
+  for (size_t i = 0; i < robot->coupling_count; i++) {
+    writer->line = robot->couplings[i].line;
+    write_coupling(writer, &robot->couplings[i]);
+  }
+  if (end != NULL) write_tool(writer, end);
+  writer->line = robot->line;
+  /* no part of such a robot is stiff, so that an explicit method suffices */
+  if (!has_losses(robot, writer->options) && !writer->options->has_ground)
+    set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
+  xmlNodePtr experiment = write_element(writer, "experiment");
+  set_attribute(experiment, "stopTime", number(1));
+  set_attribute(experiment, "stepSize", number(0.01));
+}
+
+/* Reports a robot without movable joints, or a floating one without mass. */
+static void check_motion(const struct Robot *robot, bool floats, bool is_mjcf, struct Diagnostics *diagnostics) {
+  bool moves = floats;
+  for (size_t i = 0; i < robot->joint_count && !moves; i++) moves = joint_moves(robot->joints[i]);
+  if (!moves)
+    report_error(diagnostics, robot->line,
+                 "no joint of the robot moves; expected one of another type than fixed, or %s",
+                 is_mjcf ? "a <freejoint> in a body"
+                         : "base=\"floating\" in an <include>, or --base floating on the command line");
+  else if (floats && !robot->root->moves_inertia)
+    report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
+}
+
+/* Counts joints or tendons with a property; holds the first of them. */
+struct PropertyCount {
+  const char *kind, *name;
+  long line;
+  size_t count;
+};
+
+static void count_one(struct PropertyCount *common, const char *kind, const char *name, long line) {
+  if (common->count++ == 0) *common = (struct PropertyCount){.kind = kind, .name = name, .line = line, .count = 1};
+}
+
+/* Warns of limits in the file if the <include> does not say how to treat them. */
+static void warn_of_limits(const struct Diagnostics *diagnostics, const struct PropertyCount *common, bool is_said,
+                           const char *what, const char *attribute, const char *option) {
+  if (is_said || common->count == 0) return;
+  size_t others = common->count - 1;
+  const char *and = others > 0 ? format_text(" and of %zu other%s", others, others > 1 ? "s" : "") : "";
+  report_warning(diagnostics, common->line,
+                 "%s of the %s '%s'%s; expected %s in an <include>, or --%s on the "
+                 "command line",
+                 what, common->kind, common->name, and, attribute, option);
+}
+
+static void check_limits(const struct Robot *robot, const struct RobotOptions *options,
+                         const struct Diagnostics *diagnostics) {
+  struct PropertyCount ranges = {.count = 0}, efforts = {.count = 0};
+  for (size_t i = 0; i < robot->joint_count; i++) {
+    const struct RobotJoint *joint = robot->joints[i];
+    if (!isnan(joint->lower)) count_one(&ranges, "joint", joint->name, joint->line);
+    if (joint->has_motor && joint_is_single(joint) && !isnan(joint->effort))
+      count_one(&efforts, "joint", joint->name, joint->line);
+  }
+  for (size_t i = 0; i < robot->tendon_count; i++)
+    if (!isnan(robot->tendons[i].lower)) count_one(&ranges, "tendon", robot->tendons[i].name, robot->tendons[i].line);
+  warn_of_limits(diagnostics, &ranges, options->says_limits, "motion is not stopped at the limits",
+                 "limits=\"stops\", or \"outputs\" if this is meant,", "limits stops");
+  warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may exceed the effort",
+                 "effort=\"limited\", or \"unlimited\" if this is meant,", "effort limited");
+}
+
+/* Warns of a cylinder on the ground, which touches with points on its rims and so rolls like an octagon. */
+static void check_rims(const struct Robot *robot, const struct RobotOptions *options,
+                       const struct Diagnostics *diagnostics) {
+  for (size_t i = 0; i < robot->link_count; i++) {
+    const struct RobotLink *link = robot->links[i];
+    for (size_t j = 0; j < link->collision_count; j++) {
+      const struct Collision *shape = &link->collisions[j];
+      if (strcmp(shape->type, "cylinder") != 0 || shape->is_clear || !link_touches_ground(options, link->name) ||
+          !carrier_moves(link, options->floats))
+        continue;
+      report_warning(
+          diagnostics, shape->line,
+          "the cylinder of the link '%s' touches the ground at 8 points of each rim, as an octagon would roll; "
+          "for a wheel, expected a sphere or capsule in its place, or a <joint type=\"rolling\"> in a <system> "
+          "that includes the robot",
+          link->name);
+      return;
+    }
+  }
+}
+
+/* Reports unknown links that should touch the ground, and those without a suitable shape. */
+static void check_ground_contact(const struct Robot *robot, const struct RobotOptions *options,
+                                 struct Diagnostics *diagnostics) {
+  const char *rest = options->ground_contact;
+  if (!options->has_ground || rest == NULL) return;
+  for (char *name = next_name(&rest); name != NULL; name = next_name(&rest)) {
+    const struct RobotLink *link = robot_link(robot, name, "the ground", diagnostics);
+    size_t clear = 0;
+    for (size_t i = 0; link != NULL && i < link->collision_count; i++) clear += link->collisions[i].is_clear;
+    if (link != NULL && link->collision_count == clear)
+      report_error(
+          diagnostics, link->line,
+          "the link '%s' has no shape that could stand on the ground; expected a <collision> or <geom> in it%s", name,
+          clear > 0 ? ", which its contype, conaffinity or <exclude> let touch the plane" : "");
+  }
+}
+
+xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
+  int errors = diagnostics->errors;
+  xmlNodePtr root = xmlDocGetRootElement(document);
+  bool is_mjcf = is_element(root, "mujoco");
+  struct Robot *robot = is_mjcf ? mjcf_read(root, options, diagnostics) : urdf_read(root, options, diagnostics);
+  const struct RobotLink *end = NULL;
+  if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
+    check_motion(robot, options->floats, is_mjcf, diagnostics);
+    check_ground_contact(robot, options, diagnostics);
+    end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
+  }
+  if (diagnostics->errors == errors) {
+    check_limits(robot, options, diagnostics);
+    check_rims(robot, options, diagnostics);
+  }
+  xmlFreeDoc(document);
+  document = NULL;
+  if (diagnostics->errors == errors) {
+    document = xmlNewDoc((const xmlChar *)"1.0");
+    struct Writer writer = {
+        .system = xmlNewNode(NULL, (const xmlChar *)"system"), .line = robot->line, .options = options};
+    xmlDocSetRootElement(document, writer.system);
+    write_robot(&writer, robot, end);
+    schema_check(document, diagnostics);
+  }
+  if (diagnostics->errors == errors) return document;
+  xmlFreeDoc(document);
+  return NULL;
+}
