@@ -170,7 +170,7 @@ function indent(event) {
 function listExamples() {
   const names = Object.keys(data.examples ?? {});
   $("examples").hidden = names.length === 0;
-  $("examples").replaceChildren(new Option("another system …", ""), ...names.map((name) => new Option(name, name)));
+  $("examples").replaceChildren(new Option("Systems", ""), ...names.map((name) => new Option(name, name)));
   $("examples").addEventListener("change", () => openExample($("examples").value) && run());
   $("home").hidden = !data.home;
   $("home").href = data.home ?? "";

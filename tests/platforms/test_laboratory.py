@@ -196,6 +196,10 @@ def test_a_system_is_changed_in_the_page(browser, tmp_path):
 """
     with editor(browser, write_page(tmp_path, "DoublePendulum")) as page:
         assert page.frame_locator("#page").locator("h1").inner_text() == "Two point masses on two massless rods"
+        page.set_viewport_size({"width": 1280, "height": 800})  # the plots are beside the scene, and the buttons in one row
+        scene, plots = (page.frame_locator("#page").locator(part).bounding_box() for part in ("#view", "#plots"))
+        assert plots["y"] == scene["y"] and plots["x"] >= scene["x"] + scene["width"] and scene["width"] > 350
+        assert page.locator("#editor > nav").bounding_box()["height"] < 60
         page.locator("#source").fill(spring.replace("k*x^2/2", "k*y^2/2"))
         page.wait_for_function("document.getElementById('state').textContent === '1 error'")
         assert page.locator("#messages").inner_text().startswith("line 6: the potential: unknown name 'y'")

@@ -47,6 +47,8 @@ static const struct Hint of_functions[] = {
     {"ln", "; write log for the natural logarithm"},
     {"log10", "; write log(x)/log(10)"},
     {"log2", "; write log(x)/log(2)"},
+    {"cosine", "; did you mean 'cos'?"},
+    {"tangent", "; did you mean 'tan'?"},
     {"arcsin", "; write asin"},
     {"arccos", "; write acos"},
     {"arctan", "; write atan"},
