@@ -425,6 +425,7 @@ PLANS = [
     ("return bounce_is_lost(resolution, contact, rate) ? 0.0 : restitution;", "return restitution;",
      pytest("test_roundings_of_contacts", "friction_of_bounces")),
     ("bool is_lifted = lifted != NULL && *lifted == indicator;", "bool is_lifted = false;", pytest("test_roundings_of_contacts", "lift_off")),
+    ("if (sinks_without_acceleration(resolution, contact)) return true;", "", pytest("test_roundings_of_contacts", "slips_towards")),
     ("bool is_later = is_branch || indicator_is_force(search->instance, indicator);", "bool is_later = is_branch;", pytest("test_robots_on_ground", "limbs")),
     ("is_idle |= rests;", "", pytest("test_shared_frictions", "pressing_forces")),
     ("value < 0.0)) continue;", "value < 0.0) || true) continue;", broken("stop whose ends")),

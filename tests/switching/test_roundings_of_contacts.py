@@ -5,6 +5,7 @@ lift-off without speed, and dead centres.
 
 import math
 
+import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model
 
@@ -38,11 +39,15 @@ FEET = """<system name="{name}"><parameter name="a" start="0.2"/><parameter name
 RAMP = """<system name="{name}"><parameter name="m" start="2"/><parameter name="r" start="1"/><coordinate name="x" velocity="v"/>
   <particle mass="m" x="x"/><contact name="stop" gap="x"/><friction name="rub" coordinate="x" force="1"/><force coordinate="x">r*time - 3</force>
   <solver method="{method}"/></system>"""
+WAVE = """<system name="{name}"><parameter name="m" start="2"/><parameter name="F" start="1"/><parameter name="e" start="0.3"/>
+  <parameter name="A" start="1"/><parameter name="B" start="1"/><parameter name="w" start="3"/><coordinate name="x" velocity="v"/>
+  <particle mass="m" x="x"/><contact name="stop" gap="x" restitution="e"/><friction name="rub" coordinate="x" force="F"/>
+  <force coordinate="x">A*abs(mod(w*time, 2) - 1) - B</force><solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
     ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "radau", "bdf", "erk"]),
     ("Crank", CRANK, ["taylor", "radau", "bdf"]), ("Slider", SLIDER, ["taylor"]), ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"]),
     ("Balanced", BALANCED, ["taylor"]), ("Feet", FEET, ["taylor"]),
-    ("Ramp", RAMP, ["taylor", "auto"])
+    ("Ramp", RAMP, ["taylor", "auto"]), ("Wave", WAVE, ["taylor", "auto", "radau"])
 ] for method in methods}  # fmt: skip
 
 
@@ -181,3 +186,56 @@ def test_a_force_lifts_a_body_that_friction_holds(method, m, r):
     for _ in range(40):
         instance.step(0.1)
     assert instance.get("x", "v") == pytest.approx([r * (4 - 4 / r) ** 3 / (6 * m), r * (4 - 4 / r) ** 2 / (2 * m)], rel=1e-8)
+
+
+def leaves_rest(x, F, force, slope):
+    """Return the time after which a body at rest starts under force + slope*t, infinity if it stays, and the direction. At the stop it has one way."""
+    starts = []
+    for direction in (1, -1) if x > 0 else (1,):
+        lack, rate = F - direction * force, direction * slope
+        starts.append((0.0 if lack < -1e-11 or (lack < 1e-11 and rate > 0) else lack / rate if rate > 0 else math.inf, direction))
+    return min(starts)
+
+
+def next_zero(coefficients, span, falls):
+    """Return the first zero of a polynomial (highest power first) within (0, span), at which it falls if asked for; else infinity."""
+    slope = np.polyder(np.poly1d(coefficients))
+    roots = [root.real for root in np.roots(coefficients) if abs(root.imag) < 1e-9 and 1e-10 < root.real < span]
+    return min([root for root in roots if not falls or slope(root) < 0], default=math.inf)
+
+
+def along_a_wave(end, x, m, F, e, A, B, w):
+    """Return position and velocity, event by event: the force is linear over each half period of the wave, so that x is cubic between events."""
+    t = v = 0.0
+    while t < end - 1e-14:
+        half = math.floor(w * t + 1e-11)
+        span, rises = min((half + 1) / w, end) - t, half % 2 == 1
+        slope = A * w * (1 if rises else -1)
+        force = A * (w * t - half if rises else 1 - w * t + half) - B
+        wait, direction = (0.0, math.copysign(1, v)) if v != 0 else leaves_rest(x, F, force, slope)
+        if wait > 0:
+            t += min(wait, span)
+            continue
+        cubic = np.poly1d([slope / m / 6, (force - direction * F) / m / 2, v, x])
+        stops, hits = next_zero(np.polyder(cubic), span, False), next_zero(cubic, span, True)
+        step = min(stops, hits, span)
+        x, v, t = cubic(step), np.polyder(cubic)(step), t + step
+        if step == hits:
+            x, v = 0.0, -e * v
+        if step == stops or abs(v) < 1e-9:
+            v = 0.0
+    return [x, v]
+
+
+@pytest.mark.parametrize("method", ["taylor", "auto", "radau"])
+def test_a_body_that_slips_towards_the_open_stop_at_which_it_stands(method):
+    """Where friction reaches its limit, the gap has no acceleration, and a jerk closes it. Random masses, waves, frictions and restitutions."""
+    rng = np.random.default_rng(7)
+    for _ in range(140):
+        values = dict(m=rng.uniform(0.5, 4), F=rng.uniform(0.3, 1.5), e=rng.choice([0, 0.3, 0.6]), A=rng.uniform(0.5, 5), B=rng.uniform(-1, 3),
+                      w=rng.uniform(1, 6))  # fmt: skip
+        step, x = rng.choice([0.05, 0.1, 1.0]), rng.choice([0, 0.5])
+        instance = Instance(f"Wave_{method}").initialize({**values, "x": x}, tolerance=1e-9)
+        instance.run(6, step)
+        assert instance.get("x", "v") == pytest.approx(along_a_wave(6, x, **values), rel=1e-6, abs=1e-6), values
+        instance.free()

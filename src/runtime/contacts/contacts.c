@@ -200,10 +200,23 @@ static bool is_overtaken(const struct Resolution *resolution, size_t contact) {
          height <= largest_step_error * largest_scale(resolution->state, 0);
 }
 
-/* True if an open contact touches, accelerates towards closing, and would only make bounces that errors hide. */
+/*
+ * True if a gap that was located to fall has neither rate nor acceleration: higher derivatives close it. An example is
+ * the gap of a body that begins to slip towards an open contact, where its friction reaches the limit.
+ */
+static bool sinks_without_acceleration(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  const double *value = &resolution->value[gap], *error_bound = &resolution->error_bound[gap];
+  return is_hit(resolution, contact_indicator(resolution->switches, contact)) &&
+         fabs(value[CONTACT_RATE]) <= error_bound[CONTACT_RATE] &&
+         fabs(value[CONTACT_ACCELERATION]) <= error_bound[CONTACT_ACCELERATION];
+}
+
+/* True if an open contact touches, and would sink, or only make bounces that errors hide. */
 static bool comes_to_rest(const struct Resolution *resolution, size_t contact) {
   size_t acceleration = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
   if (resolution->was_opened[contact] != 0.0 || !is_touching(resolution, contact)) return false;
+  if (sinks_without_acceleration(resolution, contact)) return true;
   if (!(-resolution->value[acceleration] > resolution->error_bound[acceleration])) return false;
   return is_overtaken(resolution, contact) ||
          bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
@@ -463,7 +476,8 @@ static size_t find_pulling(const struct Resolution *resolution) {
     /* An importer stops at a zero or beyond it, and does not say of which indicator. */
     bool is_reached = is_hit(resolution, contact_indicator(resolution->switches, i)) ||
                       (resolution->occasion == IN_EXCHANGE && force <= 0.0);
-    bool parts = is_reached && resolution->was_opened[i] == 0.0 && !resolution->jumped;
+    bool was_closed = resolution->first_mode[i] == mode_of(resolution, switches->contacts[i].mode);
+    bool parts = is_reached && was_closed && resolution->was_opened[i] == 0.0 && !resolution->jumped;
     if (!(force < 0.0) && !parts) continue;
     if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
     most = fmin(force, 0.0);
