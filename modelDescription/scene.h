@@ -1,5 +1,5 @@
 /*
- * Writes <scene>: the geometry of a system, for programs that draw it from the FMU's variables (scripts/live_page). It
+ * Writes <scene>: the geometry of a system, for programs that draw it from the FMU's variables (scripts/library/live_page). It
  * is in VendorAnnotations of FMI 2.0 and in Annotations of FMI 3.0.
  *
  *   <gravity x="" y="" z="-g"/>                           if it was given

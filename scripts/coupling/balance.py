@@ -24,11 +24,11 @@ from matplotlib.animation import FuncAnimation, PillowWriter
 from scipy.linalg import solve_continuous_are
 
 from coupling.slaves import FMUS, ROOT, Slave
-from html_page import write_csv
+from scripts.pages.html_page import write_csv
 
-from scripts.problem import Problem
-from scripts.simulation import picture_of
-from scripts.whole_files import write_whole
+from scripts.library.problem import Problem
+from scripts.library.simulation import picture_of
+from scripts.library.whole_files import write_whole
 
 SSP = ROOT / "build" / "ssp" / "BalancedCart.ssp"
 STATES = ["x", "theta", "v", "omega"]

@@ -16,7 +16,7 @@ from scipy.integrate import solve_ivp
 
 from coupling.master import DEGREES, SCHEMES, Diverged, Master, body_on_axis, derivatives_at_start, extrapolated, push
 from coupling.slaves import FMUS, ROOT, Slave
-from html_page import paragraphs, table
+from scripts.pages.html_page import paragraphs, table
 
 PENDULUM = ROOT / "build" / "coupling" / "fmu" / "HingedPendulum.fmu"
 START, END, G = [0.0, 0.0, np.pi / 2, 0.0], 1.0, 9.81  # x, v, theta, omega: the rod starts horizontal, where the loop gain is -m / M

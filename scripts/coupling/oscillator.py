@@ -19,10 +19,10 @@ from scipy.linalg import expm
 from coupling import hinge
 from coupling.master import DEGREES, SCHEMES, Diverged, Master
 from coupling.slaves import ROOT
-from html_page import page, paragraphs, svg, table, write_csv
+from scripts.pages.html_page import page, paragraphs, svg, table, write_csv
 
-from scripts.problem import Problem
-from scripts.whole_files import write_whole
+from scripts.library.problem import Problem
+from scripts.library.whole_files import write_whole
 
 COLOURS = {"jacobi": "#2a6f97", "gauss_seidel": "#588157", "fixed_point": "#f4a261", "newton": "#c1121f"}
 FOLDER = ROOT / "build" / "report"

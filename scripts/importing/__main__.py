@@ -14,7 +14,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 
-from html_page import write_csv
+from scripts.pages.html_page import write_csv
 from importing import constrained, packages, programs
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -7,10 +7,10 @@ import platform
 import sys
 from typing import NamedTuple
 
-import realtime
+from scripts.bench import realtime
 from extreme_cases import CASES, co_simulate, exchange_model
 from fmu import ROOT
-from html_page import bullets, folded, page, paragraphs, table, write_csv
+from scripts.pages.html_page import bullets, folded, page, paragraphs, table, write_csv
 from numerics import footprint, validation
 from numerics.failures import failure
 from numerics.mechanisms import comparison as mechanisms
@@ -25,10 +25,10 @@ from numerics.work_precision import comparison as work_precision
 from numerics.work_precision import energy
 from numerics.work_precision.peers import PEERS
 from numerics.work_precision.scenarios import check_of_reference
-from progress import Progress
+from scripts.library.progress import Progress
 
-from scripts.problem import Problem
-from scripts.whole_files import write_whole
+from scripts.library.problem import Problem
+from scripts.library.whole_files import write_whole
 
 FOLDER = ROOT / "build" / "report"
 
@@ -197,7 +197,7 @@ def steps_section(quick, progress):
     header = [realtime.COLUMNS[0], realtime.COLUMNS[1], *(f"{column} [µs]" for column in realtime.COLUMNS[2:6]), *realtime.COLUMNS[6:]]
     write_csv(FOLDER / "single_steps.csv", header, rows)
     text = (f"Single communication steps of 1 ms. Of each step the fastest of {realtime.RUNS} runs counts, which leaves out what else the machine did, but for \"as seen\". "
-            "Allocations are those of all steps; calls of the operating system are counted where strace is installed. scripts/realtime measures longer. "
+            "Allocations are those of all steps; calls of the operating system are counted where strace is installed. scripts/bench/realtime measures longer. "
             "FMPy's Euler and CVode, which are the methods of Reference-FMUs' fmusim too, take SimplePendulum in model exchange, with FMPy's loop in Python in their times.")  # fmt: skip
     return ReportSection([], paragraphs([text]) + table(header, rows))
 

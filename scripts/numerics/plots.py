@@ -5,7 +5,7 @@ import math
 import matplotlib.pyplot as plt
 import numpy as np
 
-from html_page import INK, svg, with_tips
+from scripts.pages.html_page import INK, svg, with_tips
 from numerics.work_precision.scenarios import SCENARIOS
 
 COLOURS = {"shipped": "#c1121f", "taylor": "#f4a261", "erk": "#2a6f97", "bdf": "#588157"}

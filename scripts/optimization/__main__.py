@@ -13,15 +13,15 @@ import numpy as np
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
-from html_page import write_csv
+from scripts.pages.html_page import write_csv
 from optimization.closed_loop import BALANCED, CONTROLLERS, DELAY, NOISE, PERIOD, TRACK, plant_of, run
 from optimization.collocation import least_time, play_back
 from optimization.tasks import CART, TASKS, with_values
 
-from scripts.problem import Problem
-from scripts.quantities import assignment
-from scripts.simulation import picture_of
-from scripts.whole_files import write_whole
+from scripts.library.problem import Problem
+from scripts.library.quantities import assignment
+from scripts.library.simulation import picture_of
+from scripts.library.whole_files import write_whole
 
 BUILD = Path(__file__).resolve().parent.parent.parent / "build"
 FOLDER = BUILD / "results"

@@ -14,7 +14,7 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave
 
-from scripts.problem import Problem
+from scripts.library.problem import Problem
 
 LONGEST = 10.0  # s, upper bound of T
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from optimization.collocation import Task
-from scripts.problem import Problem
-from scripts.variables import checked_start
+from scripts.library.problem import Problem
+from scripts.library.variables import checked_start
 
 # Swing-up of the pendulum, from hanging at rest to upright at rest at the same position, with 15 N on a track of 0.8 m.
 CART = Task(

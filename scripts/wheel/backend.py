@@ -116,7 +116,7 @@ def _contents():
 def build_sdist(sdist_directory, config_settings=None):
     if not LIBRARIES.exists():
         for script in ("libxml2", "sundials-all"):
-            subprocess.run([ROOT / "scripts" / script], env={**os.environ, "PYTHON": sys.executable}, check=True)
+            subprocess.run([ROOT / "scripts" / "package" / script], env={**os.environ, "PYTHON": sys.executable}, check=True)
     name, description = _description()
     with tarfile.open(Path(sdist_directory) / f"{name}.tar.gz", "w:gz", format=tarfile.PAX_FORMAT) as archive:
 

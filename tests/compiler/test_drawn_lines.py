@@ -8,7 +8,7 @@ import pytest
 
 import fmu
 from fmu import ROOT, lagc
-from scripts.live_page.description import scene_of
+from scripts.library.live_page.description import scene_of
 
 SYSTEMS = sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
 PENDULUM = """<system name="Swing">

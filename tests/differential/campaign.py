@@ -1,4 +1,4 @@
-"""Thousands of random systems: see scripts/differential."""
+"""Thousands of random systems: see scripts/checks/differential."""
 
 import argparse
 import collections
@@ -41,7 +41,7 @@ def leave(kind, seed, number, keep, outcome):
     place.mkdir(parents=True, exist_ok=True)
     system = GENERATORS[kind](seed, number)
     system.write(place)
-    command = f"scripts/differential --kind {kind} --seed {seed} --only {number}"
+    command = f"scripts/checks/differential --kind {kind} --seed {seed} --only {number}"
     (place / "README").write_text(
         f"{outcome.message}\n\nfamilies: {', '.join(sorted(system.families))}\nplan: {system.plan}\n\n{command}\n"
     )
@@ -79,7 +79,7 @@ def report(outcomes, seconds):
 
 def main():
     parser = argparse.ArgumentParser(
-        prog="scripts/differential", description="Random systems against an independent truth"
+        prog="scripts/checks/differential", description="Random systems against an independent truth"
     )
     parser.add_argument("--count", type=int, default=2000)
     parser.add_argument("--first", type=int, default=0, help="number of the first system")

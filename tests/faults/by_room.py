@@ -1,5 +1,5 @@
 """
-List the rooms of tests that detect a fault, beside the test named in faults.py: scripts/faults --rooms ROOM,... [INDEX IN THE LIST ...]. A
+List the rooms of tests that detect a fault, beside the test named in faults.py: scripts/checks/faults --rooms ROOM,... [INDEX IN THE LIST ...]. A
 room is a folder of tests/, or compiler, the tests in C. Writes build/faults-by-room.csv, which later runs extend. A fault that only one
 room detects depends on that room; a fault that none detects depends on the named test.
 """

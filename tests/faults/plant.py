@@ -1,5 +1,5 @@
 """
-Plant each fault of faults.py in a copy of the project: scripts/faults [INDEX IN THE LIST ...]. Build the targets of its test, and run that test.
+Plant each fault of faults.py in a copy of the project: scripts/checks/faults [INDEX IN THE LIST ...]. Build the targets of its test, and run that test.
 Fails if a fault is not detected, or if these tests fail without a fault.
 """
 

@@ -160,11 +160,11 @@ def test_documentation_has_the_formulas():
 
 
 @pytest.mark.parametrize("script, words, message", [
-    ("simulate.py", ["J=1"], "'J' of CalculatedRod cannot be set, as it follows from other parameters; these can be: theta, omega, m, l, g"),
+    ("run.py", ["J=1"], "'J' of CalculatedRod cannot be set, as it follows from other parameters; these can be: theta, omega, m, l, g"),
     ("sweep.py", ["--vary", "J=1,2"], "'J' has no start value in CalculatedRod, as it follows from other parameters; these have one: theta, omega, m, l, g"),
 ])  # fmt: skip
 def test_scripts_cannot_set_it(script, words, message, tmp_path):
-    command = [sys.executable, ROOT / "scripts" / script, fmu.archive("CalculatedRod"), *words]
+    command = [sys.executable, ROOT / "scripts" / "commands" / script, fmu.archive("CalculatedRod"), *words]
     result = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
     assert result.returncode == 1 and message in result.stderr, result.stderr
 

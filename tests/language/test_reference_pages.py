@@ -8,8 +8,8 @@ import xml.etree.ElementTree as tree
 import pytest
 
 from fmu import ROOT, lagc
-from scripts.live_page.schema import XS, documentation
-from scripts.reference_pages import PYTHON, reference_pages, relink, sections_of
+from scripts.library.live_page.schema import XS, documentation
+from scripts.pages.reference_pages import PYTHON, reference_pages, relink, sections_of
 
 TEXT, SCHEMA = ((ROOT / "fmu" / name).read_text() for name in ("README.md", "system.xsd"))
 PAGES, CONTENTS = reference_pages(TEXT, SCHEMA)

@@ -28,7 +28,7 @@ from driven_chromium import browser  # noqa: F401
 from fmu import LAGC, ROOT
 from package import assemble, run
 
-sys.path.insert(0, str(ROOT / "scripts"))
+sys.path.insert(0, str(ROOT / "scripts" / "library"))
 expressions = importlib.import_module("show_equations.expression")
 Expression, terms = expressions.Expression, expressions.terms
 listing_of = importlib.import_module("show_equations.listing").listing_of

@@ -1,4 +1,4 @@
-"""Random systems (differential/) against SymPy's equations integrated in long doubles; scripts/differential runs thousands."""
+"""Random systems (differential/) against SymPy's equations integrated in long doubles; scripts/checks/differential runs thousands."""
 
 import copy
 import faulthandler
@@ -25,7 +25,7 @@ from references import ExactMotion
 
 SEED = 644
 COUNT = int(os.environ.get("RANDOM_SYSTEMS", "23"))  # the smallest count that has all families of equations, with this seed
-# Seeds with contacts, stops, friction, events, frames, hills and event mode; scripts/differential --kind switching runs many.
+# Seeds with contacts, stops, friction, events, frames, hills and event mode; scripts/checks/differential --kind switching runs many.
 SWITCHING = [34, 47, 52]
 SMOOTH = {
     "smooth_potential",

@@ -1,4 +1,4 @@
-"""Correctness of the systems with which scripts/cost measures the cost of derivation."""
+"""Correctness of the systems with which scripts/bench/cost measures the cost of derivation."""
 
 import numpy as np
 import pytest

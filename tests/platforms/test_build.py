@@ -71,7 +71,7 @@ def test_folder_name_must_match(start, tmp_path):
     folder = tmp_path / "Other"
     assert lagc("-o", folder, system_file(tmp_path, f'{start}"Mine"><input name="u"/><output name="y">u</output></system>')).returncode == 0
     words = ["cmake", "-D", f"FOLDER={folder}", "-D", f"LIBRARIES={folder}/Other.so", "-D", "SYSTEM=Other/system.xml"]
-    result = subprocess.run([*words, "-P", ROOT / "scripts" / "pack.cmake"], capture_output=True, text=True)
+    result = subprocess.run([*words, "-P", ROOT / "scripts" / "package" / "pack.cmake"], capture_output=True, text=True)
     assert result.returncode != 0
     assert "Other/system.xml: the system is named 'Mine'; expected 'Other', as its folder or lagrange_add_fmu() names it" in " ".join(result.stderr.split())
 
@@ -155,7 +155,7 @@ def test_source_tree_stays_clean():
         pytest.skip("not a clone")
     status = subprocess.run(["git", "status", "--porcelain", "--ignored"], cwd=ROOT, capture_output=True, text=True)
     ignored = {line[3:] for line in status.stdout.splitlines() if line.startswith("!!")}
-    allowed = re.compile(r"^(build/|\.pytest_cache/|\.hypothesis/|(tests|scripts|scripts/live_page)/__pycache__/)$")
+    allowed = re.compile(r"^(build/|\.pytest_cache/|\.hypothesis/|(tests|scripts(/\w+)*)/__pycache__/)$")
     assert all(allowed.match(path) for path in ignored), ignored
 
 

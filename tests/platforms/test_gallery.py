@@ -35,8 +35,8 @@ def broken_links():
 
 def test_the_gallery():
     with alone(ROOT / "build" / "gallery.lock"):
-        subprocess.run([ROOT / "scripts" / "build-laboratory"], check=True)
-        subprocess.run([sys.executable, ROOT / "scripts" / "gallery.py"], check=True)
+        subprocess.run([ROOT / "scripts" / "package" / "build-laboratory"], check=True)
+        subprocess.run([sys.executable, ROOT / "scripts" / "commands" / "gallery.py"], check=True)
     cards = (SITE / "gallery.html").read_text()
     assert (SITE / "laboratory.html").exists() and 'href="laboratory.html"' in cards
     links = re.findall(r'(?:href|src)="(systems/[^"]*)"', cards)

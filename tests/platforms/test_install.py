@@ -35,7 +35,7 @@ def installed():
     bring_up_to_date(ROOT / "build")
     folder = tempfile.TemporaryDirectory(prefix="installed here")
     fmu.temporary_folders.append(folder)
-    subprocess.run([ROOT / "scripts" / "sundials-all"], check=True)
+    subprocess.run([ROOT / "scripts" / "package" / "sundials-all"], check=True)
     subprocess.run(["cmake", "--install", ROOT / "build", "--prefix", Path(folder.name) / "first"], check=True, capture_output=True)
     return Path(shutil.move(Path(folder.name) / "first", Path(folder.name) / "second"))
 

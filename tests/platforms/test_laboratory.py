@@ -12,8 +12,8 @@ import wasmtime
 import fmu
 from building import ROOT
 from driven_chromium import browser  # noqa: F401
-from scripts.live import LABORATORY
-from scripts.live_page.editor import editor_of, files_of
+from scripts.commands.live import LABORATORY
+from scripts.library.live_page.editor import editor_of, files_of
 
 STEPS = 100
 DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "MotorPendulum", "SimplePendulumLinear", "StickSlip"]
@@ -23,7 +23,7 @@ ALL = sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
 @functools.cache
 def module():
     """lagc and the runtime in WebAssembly."""
-    subprocess.run([ROOT / "scripts" / "build-laboratory"], check=True)
+    subprocess.run([ROOT / "scripts" / "package" / "build-laboratory"], check=True)
     engine = wasmtime.Engine()
     return engine, wasmtime.Module.from_file(engine, str(LABORATORY))
 

@@ -16,9 +16,9 @@ import pytest
 import fmu
 from building import BUILD, LAGC, ROOT
 from driven_chromium import COLORS_SEEN, browser, opened  # noqa: F401
-from scripts.live import origin_in
-from scripts.live_page.page import page_of
-from scripts.simulation import settings_of
+from scripts.commands.live import origin_in
+from scripts.library.live_page.page import page_of
+from scripts.library.simulation import settings_of
 
 PULLED = ["SimplePendulum", "DoublePendulum", "FourBar"]  # for others compiling the second module takes minutes
 DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "Gyrocompass"]

@@ -8,9 +8,9 @@ import fmu
 from building import build_systems
 from driven_chromium import COLORS_SEEN, chromium, opened
 from meshes import TETRAHEDRON, obj_text, stl_text, triangles_of
-from scripts.live_page.editor import files_of
-from scripts.live_page.page import page_of
-from scripts.problem import Problem
+from scripts.library.live_page.editor import files_of
+from scripts.library.live_page.page import page_of
+from scripts.library.problem import Problem
 
 # More triangles than the page draws.
 ANGLES = np.meshgrid(np.linspace(0, 2 * np.pi, 101)[:-1], np.linspace(0, 2 * np.pi, 61)[:-1])

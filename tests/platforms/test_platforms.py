@@ -18,7 +18,7 @@ import pytest
 
 import fmu
 from building import alone, bring_up_to_date
-from cross import PLATFORMS, Failure, compile_fmu, libraries_of
+from scripts.package.cross import PLATFORMS, Failure, compile_fmu, libraries_of
 from fmu import BUILD, ROOT
 
 pytestmark = pytest.mark.release
@@ -55,7 +55,7 @@ def platforms():
     bring_up_to_date(ROOT / "build")
     FOLDER.mkdir(parents=True, exist_ok=True)
     with alone(FOLDER / "lock"):
-        subprocess.run([ROOT / "scripts" / "sundials-all"], check=True)
+        subprocess.run([ROOT / "scripts" / "package" / "sundials-all"], check=True)
         systems = ";".join(str(source_of(name)) for name in SYSTEMS)
         words = [f"-DSYSTEMS={systems}", f"-DPLATFORMS={';'.join(PLATFORMS)}", f"-DTOOLS={ROOT / 'build'}", f"-DLAGRANGE_PYTHON={sys.executable}"]
         subprocess.run([ROOT / "scripts" / "build", FOLDER, "-DFMI_VERSIONS=2;3", *words], check=True)
@@ -261,7 +261,7 @@ def test_large_systems_take_seconds(tmp_path):
     """Three seconds on an idle machine, and some 20 more with an empty zig cache; unrolled series would take minutes."""
     system = ROOT / "scripts" / "numerics" / "systems" / "StewartPlatform" / "system.xml"
     assert fmu.lagc(system, "-o", tmp_path).returncode == 0
-    words = [sys.executable, ROOT / "scripts" / "cross.py", "fmu", "linux64", tmp_path / "system.c", tmp_path, "StewartPlatform"]
+    words = [sys.executable, ROOT / "scripts" / "package" / "cross.py", "fmu", "linux64", tmp_path / "system.c", tmp_path, "StewartPlatform"]
     subprocess.run(words, check=True, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (50, 50)))
 
 
@@ -272,7 +272,7 @@ def test_platforms_that_cannot_be_compiled(tmp_path):
         compile_fmu("win64", system, tmp_path, "f")
     with pytest.raises(Failure, match="'vax' is not known; expected linux64, win64, darwin64, aarch64-linux"):
         libraries_of("vax", "f")
-    with pytest.raises(Failure, match="needs SUNDIALS for win64; expected the libraries of scripts/sundials-all, or another <solver> than erk and bdf"):
+    with pytest.raises(Failure, match="needs SUNDIALS for win64; expected the libraries of scripts/package/sundials-all, or another <solver> than erk and bdf"):
         compile_fmu("win64", platforms() / "systems" / "BeadOnHoop" / "system.c", tmp_path, "BeadOnHoop")
 
 
@@ -286,7 +286,7 @@ def test_lagc_for_windows(tmp_path):
     compiler = f"{sys.executable};-m;ziglang;cc;-target;x86_64-windows-gnu"
     with alone(FOLDER / "lagc.lock"):
         words = [] if (folder / "CMakeCache.txt").exists() else ["-DCMAKE_SYSTEM_NAME=Windows", f"-DCMAKE_C_COMPILER={compiler}"]
-        subprocess.run(["cmake", "-S", ROOT / "scripts" / "lagc", "-B", folder, *words], check=True, capture_output=True)
+        subprocess.run(["cmake", "-S", ROOT / "scripts" / "package" / "lagc", "-B", folder, *words], check=True, capture_output=True)
         subprocess.run(["cmake", "--build", folder, "--target", "lagc", "--parallel", "2"], check=True, capture_output=True)
     systems = {name: ROOT / "fmu" / name / "system.xml" for name in fmu.all_names()}
     systems |= {name: ROOT / "tests" / "systems" / name / "system.xml" for name in fmu.further_names()}

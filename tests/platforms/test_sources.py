@@ -10,7 +10,7 @@ import pytest
 from fmpy.build import build_platform_binary
 from lxml import etree
 
-import clashes
+from scripts.checks import clashes
 import fmi3
 import fmu
 from building import runtime
@@ -187,5 +187,5 @@ def test_only_functions_of_every_c_library():
     """Windows' C library lacks some functions of C11 and of POSIX, so FMUs, ensembles and sweeps use none of them."""
     missing = r"\b(aligned_alloc|posix_memalign|memalign|strndup|strdup|asprintf|clock_gettime|gmtime_r|random)\("
     files = [path for room in ("src/runtime", "src/ensemble", "include") for path in (ROOT / room).rglob("*.[ch]")]
-    used = {str(path): found for path in [*files, ROOT / "scripts" / "sweep_runs.c"] if (found := re.findall(missing, path.read_text()))}
+    used = {str(path): found for path in [*files, ROOT / "scripts" / "library" / "sweeping" / "single_runs.c"] if (found := re.findall(missing, path.read_text()))}
     assert len(files) > 100 and used == {}

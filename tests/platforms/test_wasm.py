@@ -212,6 +212,6 @@ def test_archive():
 @pytest.mark.parametrize("solver, words", [("bdf", "expected another <solver> than erk and bdf"), (None, "FMI 2.0 knows no platform wasm32; expected FMI 3")])
 def test_errors(tmp_path, solver, words):
     fmu.lagc(ROOT / "fmu" / "DoublePendulum" / "system.xml", "-o", tmp_path, *(["--solver", solver] if solver else []))
-    command = [sys.executable, ROOT / "scripts" / "cross.py", "fmu", "wasm32", tmp_path / "system.c", tmp_path / "binaries", "DoublePendulum"]
+    command = [sys.executable, ROOT / "scripts" / "package" / "cross.py", "fmu", "wasm32", tmp_path / "system.c", tmp_path / "binaries", "DoublePendulum"]
     result = subprocess.run([*command, "--fmi", "3" if solver else "2"], capture_output=True, text=True)
     assert result.returncode != 0 and words in result.stderr

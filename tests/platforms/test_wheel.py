@@ -41,7 +41,7 @@ def test_any_linux_can_install_it():
 
 def test_one_version_of_the_compiler():
     """The wheel's build requirement, its dependency, and the tree's requirement have the same version."""
-    pin = (ROOT / "scripts" / "requirements-platforms.txt").read_text().split()[-1]
+    pin = (ROOT / "scripts" / "requirements" / "platforms.txt").read_text().split()[-1]
     assert re.findall(r'"(ziglang[^"]*)"', (ROOT / "scripts" / "wheel" / "pyproject.toml").read_text()) == [pin, pin]
 
 

@@ -12,8 +12,8 @@ import fmu
 from closed_forms import pendulum_angle
 from fmu import ROOT
 from driven_chromium import COLORS_SEEN, chromium, opened
-from scripts.live_page.page import page_of_motion
-from scripts.simulation import simulate, write_results
+from scripts.library.live_page.page import page_of_motion
+from scripts.library.simulation import simulate, write_results
 
 ARM = """<system name="SceneArm">
   <parameter name="l" start="0.5" unit="m"/><parameter name="m" start="2" unit="kg"/>
@@ -67,10 +67,10 @@ def paused(page):
 
 def test_a_pendulum(browser, tmp_path):
     """
-    scripts/simulate.py writes a page that shows the bob and its rod at any time, whatever was recorded. It plays from the start, and loads
+    scripts/commands/run.py writes a page that shows the bob and its rod at any time, whatever was recorded. It plays from the start, and loads
     nothing from elsewhere.
     """
-    words = [sys.executable, ROOT / "scripts" / "simulate.py", fmu.archive("SimplePendulum"), "theta=2", "l=0.5"]
+    words = [sys.executable, ROOT / "scripts" / "commands" / "run.py", fmu.archive("SimplePendulum"), "theta=2", "l=0.5"]
     printed = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True).stdout
     assert re.search(r"^animation +/.*/build/results/SimplePendulum-motion\.html$", printed, re.M)
     file = tmp_path / "build" / "results" / "SimplePendulum-motion.html"
@@ -238,6 +238,6 @@ def test_size(tmp_path):
 
 
 def test_nothing_to_draw(tmp_path):
-    words = [sys.executable, ROOT / "scripts" / "simulate.py", fmu.archive("PidController")]
+    words = [sys.executable, ROOT / "scripts" / "commands" / "run.py", fmu.archive("PidController")]
     printed = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True).stdout
     assert not list(tmp_path.rglob("*.html")) and "animation  none, since the system has no particles" in printed

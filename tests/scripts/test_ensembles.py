@@ -13,7 +13,7 @@ from building import build_systems
 from closed_forms import kepler, pendulum_angle
 from ensemble_runs import HERE, alone, assert_as_alone, assert_same_bits, ensemble, starts, states
 from fmu import ROOT, archive
-from scripts.ensembles import includes, source_of
+from scripts.library.ensembles import includes, source_of
 
 # Ranges of the varied values for each system, and the end. F is an input, and the pivot rotates with time.
 SYSTEMS = {

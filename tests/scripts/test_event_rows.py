@@ -15,7 +15,7 @@ from building import build_systems
 from fmu import ROOT
 
 sys.path.insert(0, str(ROOT))
-from scripts.simulation import event_times, simulate  # noqa: E402
+from scripts.library.simulation import event_times, simulate  # noqa: E402
 
 SWITCHED = """<system name="Switched"><coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/><force coordinate="x">if(time &lt; 0.35, 1, -3)</force>
   <output name="a" unit="m/s2">der(v)</output><experiment stopTime="1" stepSize="0.1"/></system>"""

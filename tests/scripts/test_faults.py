@@ -1,4 +1,4 @@
-"""Each entry in the list of scripts/faults fits the code."""
+"""Each entry in the list of scripts/checks/faults fits the code."""
 
 import sys
 

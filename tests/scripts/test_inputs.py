@@ -16,10 +16,10 @@ from building import build_systems
 from fmu import ROOT
 
 sys.path.insert(0, str(ROOT))
-from scripts.co_simulation import Supplier  # noqa: E402
-from scripts.problem import Problem  # noqa: E402
-from scripts.signals import spline_slopes  # noqa: E402
-from scripts.simulation import simulate  # noqa: E402
+from scripts.library.co_simulation import Supplier  # noqa: E402
+from scripts.library.problem import Problem  # noqa: E402
+from scripts.library.signals import spline_slopes  # noqa: E402
+from scripts.library.simulation import simulate  # noqa: E402
 
 MASS = """<system name="Pushed"><input name="F" unit="N"/><coordinate name="x" velocity="v" unit="m"/><particle mass="1" x="x"/>
   <force coordinate="x">F</force><output name="push" unit="N">2*F</output><experiment stopTime="1" stepSize="0.25"/></system>"""

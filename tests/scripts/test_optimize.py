@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 
 import fmu
 from building import ROOT, build_systems
-from scripts.problem import Problem
+from scripts.library.problem import Problem
 
 pytestmark = pytest.mark.release
 

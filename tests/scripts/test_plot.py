@@ -10,7 +10,7 @@ import fmu
 from fmu import ROOT
 
 sys.path.insert(0, str(ROOT))
-from scripts.simulation import event_times, figure_of, panels_of, simulate  # noqa: E402
+from scripts.library.simulation import event_times, figure_of, panels_of, simulate  # noqa: E402
 
 
 def panels(name):

@@ -12,9 +12,9 @@ import package
 from fmu import LAGC, ROOT, archive
 
 sys.path.insert(0, str(ROOT))
-from scripts.problem import Problem  # noqa: E402
-from scripts.quantities import number_of  # noqa: E402
-from scripts.simulation import simulate  # noqa: E402
+from scripts.library.problem import Problem  # noqa: E402
+from scripts.library.quantities import number_of  # noqa: E402
+from scripts.library.simulation import simulate  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -93,7 +93,7 @@ def test_commands(command, tmp_path):
 
 
 def test_sweeps(tmp_path):
-    command = [sys.executable, ROOT / "scripts" / "sweep.py", "SimplePendulum", "--stop", "0.1", "--output", tmp_path / "runs.parquet"]
+    command = [sys.executable, ROOT / "scripts" / "commands" / "sweep.py", "SimplePendulum", "--stop", "0.1", "--output", tmp_path / "runs.parquet"]
     subprocess.run([*command, "--vary", "theta=0deg:90deg:3", "--vary", "l=20cm,0.5"], check=True, capture_output=True)
     runs = pq.read_table(tmp_path / "runs.parquet").to_pydict()
     assert sorted(set(runs["l"])) == [0.2, 0.5]

@@ -6,7 +6,7 @@ import sys
 
 from fmpy import read_model_description
 
-import realtime
+from scripts.bench import realtime
 from fmu import archive, unpacked
 
 

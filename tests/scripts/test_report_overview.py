@@ -5,7 +5,7 @@ import re
 
 import matplotlib.pyplot as plt
 
-from html_page import INK, page, svg, with_tips
+from scripts.pages.html_page import INK, page, svg, with_tips
 from numerics.overview import NEVER, MethodRun, cells_of, overview, shade
 
 RUNS = [

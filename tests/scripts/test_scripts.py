@@ -12,7 +12,7 @@ import pytest
 import fmu
 from fmu import ROOT
 
-SIMULATE = [sys.executable, str(ROOT / "scripts" / "simulate.py")]
+SIMULATE = [sys.executable, str(ROOT / "scripts" / "commands" / "run.py")]
 
 
 @pytest.mark.parametrize("word, message", [
@@ -131,7 +131,7 @@ def test_a_build_waits_for_another_in_its_folder(clone):
 
 def test_a_sweep_builds_its_own_fmu_alone(clone):
     """A sweep builds one FMU without configuring again; checking all FMUs takes longer than a small sweep."""
-    stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts").glob("requirements-*.txt")))
+    stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts" / "requirements").glob("*.txt")))
     script(clone.folder / "build" / "venv" / "bin" / "python", 'echo "python $*" >>"$LOG"\n')
     (clone.folder / "build" / "venv" / "installed-sweep").write_text(stamp)
     for name in ("One", "Other"):
@@ -146,7 +146,7 @@ def test_a_sweep_builds_its_own_fmu_alone(clone):
 @pytest.fixture
 def ready(clone):
     """A clone after set-up."""
-    stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts").glob("requirements-*.txt")))
+    stamp = "".join(path.read_text() for path in sorted((ROOT / "scripts" / "requirements").glob("*.txt")))
     script(clone.folder / "build" / "venv" / "bin" / "python", 'echo "python $*" >>"$LOG"\n')
     (clone.folder / "build" / "venv" / "installed-run").write_text(stamp)
     return clone
@@ -165,7 +165,7 @@ def test_a_folder_of_ones_own(word, ready, tmp_path):
     status, text = ready.run("run", word, "theta=1", cwd=tmp_path / "else where")
     assert status == 0, text
     assert any(f"-DSYSTEMS={bead}" in call for call in ready.calls())
-    assert ready.calls()[-1] == "python scripts/simulate.py build/own/fmu/Bead.fmu theta=1"
+    assert ready.calls()[-1] == "python scripts/commands/run.py build/own/fmu/Bead.fmu theta=1"
 
 
 def test_a_robot(ready, tmp_path):
@@ -176,7 +176,7 @@ def test_a_robot(ready, tmp_path):
     status, text = ready.run("run", "arm.urdf", "elbow=1", cwd=tmp_path)
     assert status == 0, text
     assert any(f"-DSYSTEMS={tmp_path}/arm.urdf" in call for call in ready.calls())
-    assert ready.calls()[-1] == "python scripts/simulate.py build/own/fmu/arm_6.fmu elbow=1"
+    assert ready.calls()[-1] == "python scripts/commands/run.py build/own/fmu/arm_6.fmu elbow=1"
 
 
 @pytest.mark.parametrize("word", ["Pendulum", "fmu/Pendulum", "fmu/Pendulum/system.xml"])
@@ -185,7 +185,7 @@ def test_a_system_of_the_clone(word, ready):
     status, text = ready.run("run", word, cwd=ready.folder)
     assert status == 0, text
     assert not any("SYSTEMS" in call for call in ready.calls())
-    assert ready.calls()[-1] == "python scripts/simulate.py build/fmu/Pendulum.fmu"
+    assert ready.calls()[-1] == "python scripts/commands/run.py build/fmu/Pendulum.fmu"
 
 
 def test_systems_that_are_not_there(ready, tmp_path):
@@ -223,7 +223,7 @@ def source(clone):
 
 
 def test_sundials_is_built_once(source):
-    status, text = source.run("sundials")
+    status, text = source.run("package/sundials")
     assert (status, text) == (0, "Building SUNDIALS\n")
     build = source.folder / "build"
     assert {path.name for path in (build / "sundials").iterdir()} == {"lib", "version"}
@@ -232,10 +232,10 @@ def test_sundials_is_built_once(source):
     for call in calls:  # all files of apt are in the build folder
         if call.startswith("apt-get"):
             assert all(f"{place}={build}/sundials-unfinished/" in call for place in ("Dir::State::lists", "Dir::Cache"))
-    assert source.run("sundials") == (0, "") and source.calls() == calls
+    assert source.run("package/sundials") == (0, "") and source.calls() == calls
     # Another packaged version is built anew.
     script(source.folder / "bin" / "dpkg-query", "echo another\n")
-    assert source.run("sundials")[0] == 0 and len(source.calls()) == 2 * len(calls)
+    assert source.run("package/sundials")[0] == 0 and len(source.calls()) == 2 * len(calls)
 
 
 @pytest.mark.parametrize("what, message", [
@@ -245,21 +245,21 @@ def test_sundials_is_built_once(source):
 def test_without_the_source_of_sundials(what, message, source):
     """The script prints a message, succeeds, and does not try again until asked."""
     source.environment |= what
-    status, text = source.run("sundials")
-    assert status == 0 and text.splitlines()[-1].startswith(f"scripts/sundials: {message}") and "packaged SUNDIALS" in text
+    status, text = source.run("package/sundials")
+    assert status == 0 and text.splitlines()[-1].startswith(f"scripts/package/sundials: {message}") and "packaged SUNDIALS" in text
     assert not (source.folder / "build" / "sundials").exists()
     calls = source.calls()
-    assert source.run("sundials") == (0, "") and source.calls() == calls
+    assert source.run("package/sundials") == (0, "") and source.calls() == calls
     shutil.rmtree(source.folder / "build" / "sundials-failed")
     source.environment |= {"SOURCE": "there", "MADE": "well"}
-    assert source.run("sundials") == (0, "Building SUNDIALS\n")
+    assert source.run("package/sundials") == (0, "Building SUNDIALS\n")
 
 
 def test_a_build_of_sundials_that_was_stopped(source):
     unfinished = source.folder / "build" / "sundials-unfinished"
     (unfinished / "ready").mkdir(parents=True)
     (unfinished / "sundials-0").mkdir()
-    assert source.run("sundials") == (0, "Building SUNDIALS\n")
+    assert source.run("package/sundials") == (0, "Building SUNDIALS\n")
     assert (source.folder / "build" / "sundials" / "version").exists() and not unfinished.exists()
 
 

@@ -19,7 +19,7 @@ pytestmark = pytest.mark.release
 
 
 def command(output, *words):
-    return [sys.executable, str(ROOT / "scripts" / "sweep.py"), *words, "--output", str(output)]
+    return [sys.executable, str(ROOT / "scripts" / "commands" / "sweep.py"), *words, "--output", str(output)]
 
 
 def sweep(output, *words):

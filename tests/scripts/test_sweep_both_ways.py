@@ -12,7 +12,7 @@ import package
 from building import ROOT, build_systems
 from ensemble_runs import HERE
 from fmu import all_names, archive
-from scripts.ensembles import source_of
+from scripts.library.ensembles import source_of
 
 # The method is auto and there are events, so that the runtime for single lanes needs most symbols that a system may refer to.
 BALL = """\
@@ -65,7 +65,7 @@ def assembled(tmp_path_factory):
 @pytest.fixture(params=["clone", "package"])
 def command(request, assembled):
     """Command line of a sweep, and the environment of its process."""
-    clone = [sys.executable, ROOT / "scripts" / "sweep.py"], {"PYTHONPATH": str(ROOT / "scripts")}
+    clone = [sys.executable, ROOT / "scripts" / "commands" / "sweep.py"], {"PYTHONPATH": str(ROOT / "scripts")}
     return clone if request.param == "clone" else ([sys.executable, "-m", "lagrange_fmu", "sweep"], package.environment(assembled))
 
 

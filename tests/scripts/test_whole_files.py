@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-import html_page
+from scripts.pages import html_page
 import package
 from building import build_systems
 from fmu import archive
 from motions import lagrange_fmu  # noqa: F401
-from scripts.problem import Problem
-from scripts.whole_files import write_whole
+from scripts.library.problem import Problem
+from scripts.library.whole_files import write_whole
 
 # x = t, until the square root becomes undefined at 1.1 s.
 WALL = """\

@@ -1,7 +1,7 @@
-"""scripts/words.py finds words and sentences that the style guide excludes, and nothing else."""
+"""scripts/checks/words.py finds words and sentences that the style guide excludes, and nothing else."""
 
 import pytest
-import words
+from scripts.checks import words
 
 
 @pytest.mark.parametrize("source, lines", [

@@ -81,7 +81,7 @@ def test_only_the_solver_that_is_needed(name):
 
 
 def test_the_optimised_sundials():
-    """FMUs link the SUNDIALS of scripts/sundials if it exists."""
+    """FMUs link the SUNDIALS of scripts/package/sundials if it exists."""
     is_there = (fmu.ROOT / "build" / "sundials" / "version").exists()
     text = (BUILD / "test-systems" / "systems" / "FurutaPendulum" / "link.map").read_text()
     assert ("sundials/lib/libsundials_cvode.a" in text) == is_there

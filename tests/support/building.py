@@ -1,5 +1,5 @@
 """
-Build FMUs of systems that tests write themselves, without CMake. The steps are lagc, one call of a compiler with the flags of scripts/fmu.cmake, and
+Build FMUs of systems that tests write themselves, without CMake. The steps are lagc, one call of a compiler with the flags of scripts/package/fmu.cmake, and
 pack.cmake, with the tools of an existing build. CMake alone would take as long per FMU as the C compiler.
 """
 
@@ -63,7 +63,7 @@ def runtime(version):
 def runtime_digest():
     """Return a hash that changes with the runtime."""
     files = [BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
-    files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts").glob("*.cmake"), Path(__file__)]
+    files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts" / "package").glob("*.cmake"), Path(__file__)]
     return hashlib.sha256("".join(f"{path} {path.stat().st_mtime_ns}\n" for path in sorted(files)).encode()).hexdigest()
 
 
@@ -80,7 +80,7 @@ def library_words(source, library, version, compiler="gcc", speed=SPEED):
 def pack_words(folder, library, archive, version):
     settings = {"FOLDER": folder, "LIBRARIES": library, "FMU": archive, "VERSION": version, "SYSTEM": "system.xml", "SOURCE": ROOT,
                 "NAMES": BUILD / "global_names", "LICENSES": BUILD / "licenses", "ZIP": shutil.which("zip"), "PYTHON": sys.executable}  # fmt: skip
-    return ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "pack.cmake"]
+    return ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "package" / "pack.cmake"]
 
 
 def run(words):

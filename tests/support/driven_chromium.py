@@ -7,7 +7,7 @@ import pytest
 from playwright.sync_api import sync_playwright
 
 import fmu
-from scripts.live_page.page import page_of
+from scripts.library.live_page.page import page_of
 
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 

@@ -5,8 +5,8 @@ import numpy as np
 from fmpy import read_model_description
 
 from fmu import ROOT, archive
-from scripts.ensembles import Ensemble, lanes_here, source_of
-from scripts.sweep import compile_ensemble
+from scripts.library.ensembles import Ensemble, lanes_here, source_of
+from scripts.commands.sweep import compile_ensemble
 
 HERE = lanes_here(ROOT / "build" / "libsweep_runs.so")  # lanes of this processor
 NUMBERS = [lanes for lanes in (2, 4, 8) if lanes <= HERE]  # numbers of lanes that it supports

@@ -14,14 +14,12 @@ def assemble(folder):
     """Fill the folder with the contents of the wheel, as copies, since modules look for others beside themselves."""
     package = folder / "lagrange_fmu"
     shutil.copytree(SCRIPTS / "wheel" / "lagrange_fmu", package, ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(SCRIPTS / "live_page", package / "live_page", ignore=shutil.ignore_patterns("__pycache__"))
-    shutil.copytree(SCRIPTS / "show_equations", package / "show_equations", ignore=shutil.ignore_patterns("__pycache__"))
-    (package / "bin").mkdir()
-    (package / "runtime" / "scripts").mkdir(parents=True)
-    files = {f"{module}.py": SCRIPTS / f"{module}.py" for module in ("co_simulation", "ensembles", "exchange", "feedback", "named_values", "picture", "problem", "progress", "quantities", "signals", "simulation", "sweep_records", "sweep_arguments", "sweep_worker", "sweeping", "variables", "whole_files")}
-    files |= {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC, "runtime/scripts/cross.py": SCRIPTS / "cross.py"}
-    files |= {"runtime/scripts/one_file.py": SCRIPTS / "one_file.py"}
-    files |= {"runtime/scripts/sweep_runs.c": SCRIPTS / "sweep_runs.c"}
+    shutil.copytree(SCRIPTS / "library", package, ignore=shutil.ignore_patterns("__pycache__"), dirs_exist_ok=True)
+    for part in ("bin", "runtime/scripts/package", "runtime/scripts/requirements"):
+        (package / part).mkdir(parents=True)
+    files = {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC}
+    for name in ("package/cross.py", "package/one_file.py", "requirements/platforms.txt"):
+        files[f"runtime/scripts/{name}"] = SCRIPTS / name
     for part in ("include", "src/runtime", "src/ensemble"):
         shutil.copytree(ROOT / part, package / "runtime" / part)
     for name, source in files.items():

@@ -37,7 +37,7 @@ def _install(wheel):
     pip = FOLDER / "venv" / "bin" / "pip"
     if not pip.exists():
         subprocess.run([sys.executable, "-m", "venv", FOLDER / "venv"], check=True)
-    subprocess.run([pip, "install", "--quiet", "--disable-pip-version-check", "-c", ROOT / "scripts" / "requirements-run.txt", wheel], check=True)
+    subprocess.run([pip, "install", "--quiet", "--disable-pip-version-check", "-c", ROOT / "scripts" / "requirements" / "run.txt", wheel], check=True)
     subprocess.run([pip, "install", "--quiet", "--disable-pip-version-check", "--force-reinstall", "--no-deps", wheel], check=True)
 
 

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, fields
 
 import numpy as np
 
-from html_page import write_csv as write_csv_table
+from scripts.pages.html_page import write_csv as write_csv_table
 from numerics.driver import SOLVERS, folder_of, step_repeatedly
 from numerics.failures import failure
 from numerics.work_precision.peers import PEERS

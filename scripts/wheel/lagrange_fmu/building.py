@@ -19,8 +19,8 @@ from .language import LAGC
 from .live_page.origin import Origin
 from .packing import pack
 from .problem import Problem
-from .runtime.scripts.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
-from .runtime.scripts.one_file import one_file
+from .runtime.scripts.package.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
+from .runtime.scripts.package.one_file import one_file
 from .variables import suggestion, near_file
 from .whole_files import write_whole
 
@@ -157,8 +157,8 @@ def compile_libraries(folder, name, platforms, fmi, content):
         if platform_name == WEBASSEMBLY:
             extra = content / "extra" / "org.modelica.fmi-ls-wasm"
             extra.mkdir(parents=True)
-            for manifest in ("manifest.xml", "fmi-ls-manifest.xml"):  # as scripts/pack.cmake
-                shutil.copy(HERE / "runtime" / "scripts" / "wasm_component" / "manifest.xml", extra / manifest)
+            for manifest in ("manifest.xml", "fmi-ls-manifest.xml"):  # as scripts/package/pack.cmake
+                shutil.copy(HERE / "runtime" / "scripts" / "package" / "wasm_component" / "manifest.xml", extra / manifest)
 
 
 def copy_licenses(file, target):

@@ -11,7 +11,7 @@ from . import caching
 from .building import runtime_key, take_or_compile
 from .problem import Problem
 from .running import fmu_of
-from .runtime.scripts.cross import zig
+from .runtime.scripts.package.cross import zig
 
 PACKAGE = Path(__file__).parent
 RUNTIME = PACKAGE / "runtime"
@@ -36,7 +36,7 @@ def compiled(place, name, key, what, arguments_for):
 
 def runner(place):
     """Return the path of the library that performs the runs of one FMU, one after another."""
-    words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", RUNTIME / "include", RUNTIME / "scripts" / "sweep_runs.c"]
+    words = ["-std=c11", "-O2", "-shared", "-fPIC", "-fvisibility=hidden", "-I", RUNTIME / "include", PACKAGE / "sweeping" / "single_runs.c"]
     return compiled(place, "sweep_runs", ["sweep"], "the library that runs sweeps cannot be compiled", lambda library: [*words, "-o", library])
 
 
@@ -67,16 +67,16 @@ def compile_ensemble(place, source, lanes):
 
 
 def sweeping():
-    """Import and return the module `sweeping`; raise Problem if pyarrow is missing."""
+    """Import and return the module sweeping.runs; raise Problem if pyarrow is missing."""
     try:
-        from . import sweeping
+        from .sweeping import runs
     except ModuleNotFoundError as missing:
         raise Problem(f"{missing.name} is not installed; it comes with pip install pyarrow") from None
-    return sweeping
+    return runs
 
 
 def sweep_by_words(system, words):
-    """Sweep by the arguments that sweep_arguments.py declares; return the path of the Parquet file."""
+    """Sweep by the arguments that sweeping/arguments.py declares; return the path of the Parquet file."""
     sweep = sweeping().sweep
     with fmu_of(system) as fmu, tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
@@ -84,7 +84,7 @@ def sweep_by_words(system, words):
 
 
 def variation(name, values, random):
-    """Check a range or values; return (name, values) as sweep_arguments.variation does: a tuple (FROM, TO, COUNT or None), or a list."""
+    """Check a range or values; return (name, values) as sweeping.arguments.variation does: a tuple (FROM, TO, COUNT or None), or a list."""
     try:
         numbers = [] if isinstance(values, str) else [value if isinstance(value, str) else float(value) for value in values]
     except (TypeError, ValueError):

@@ -228,7 +228,7 @@ static bool steps_in_time(const struct Model *model) {
 
 /*
  * Returns the description of totalEnergy, which names the conservation law if there is one, see energies.h.
- * scripts/sweep.py reads its ending.
+ * scripts/library/sweeping reads its ending.
  */
 static const char *total_energy_description(const struct Model *model) {
   const struct Graph *graph = model->graph;

@@ -1,4 +1,4 @@
-/* Coefficients of Radau IIA, written by scripts/radau_tables.py; radau.h explains them. */
+/* Coefficients of Radau IIA, written by scripts/checks/radau_tables.py; radau.h explains them. */
 static const struct RadauMethod methods[] = {
     {.stages = 3,
      .node = {0.15505102572168219, 0.64494897427831781, 1.0},

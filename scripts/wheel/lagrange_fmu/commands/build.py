@@ -1,7 +1,7 @@
 """Build the FMU of a system, and print its path."""
 
 from ..building import NATIVE, build
-from ..runtime.scripts.cross import PLATFORM_NAMES
+from ..runtime.scripts.package.cross import PLATFORM_NAMES
 from .shared_arguments import SYSTEM, add_fmi, add_output, add_robot, robot_of
 
 

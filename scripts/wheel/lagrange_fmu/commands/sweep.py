@@ -1,6 +1,6 @@
 """Simulate a grid or a random sample of start values and parameters, on all cores; write a Parquet file with a row for each run."""
 
-from ..sweep_arguments import add_sweep_arguments
+from ..sweeping.arguments import add_sweep_arguments
 from .shared_arguments import SYSTEM_OR_FMU
 
 

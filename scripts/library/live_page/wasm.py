@@ -1,0 +1,29 @@
+"""Compile an FMU's source to WebAssembly with zig, together with driver.c, the functions that a page needs beside those of FMI."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from ..problem import Problem
+
+DRIVER = Path(__file__).resolve().parent / "driver.c"
+EXPORTS = ["Reset", "SetupExperiment", "EnterInitializationMode", "ExitInitializationMode", "DoStep", "GetFMUstate", "SetFMUstate",
+           "GetReal", "GetInteger", "GetDirectionalDerivative", "SetReal", "SetInteger", "SetBoolean"]  # fmt: skip
+# As in scripts/package/cross.py: no fused multiply-add, no unused functions.
+FLAGS = ["-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c11", "-fvisibility=hidden", "-ffp-contract=off",
+         "-ffunction-sections", "-fdata-sections", "-fno-sanitize=all", "-Wl,--gc-sections"]  # fmt: skip
+
+
+def compile_to_wasm(source):
+    """Return the bytes of a module without imports, compiled from an FMU's C source of FMI 2.0; raise Problem if that fails."""
+    source = Path(source).resolve()
+    with tempfile.TemporaryDirectory() as scratch:
+        output = Path(scratch) / "fmu.wasm"
+        words = [sys.executable, "-m", "ziglang", "cc", *FLAGS, f'-DFMU_SOURCE="{source}"', str(DRIVER), "-o", str(output)]
+        words += [f"-Wl,--export=fmi2{name}" for name in EXPORTS]
+        result = subprocess.run(words, env={"ZIG_LOCAL_CACHE_DIR": scratch, **os.environ}, capture_output=True, text=True)
+        if result.returncode != 0:
+            raise Problem(f"{source.name} cannot be compiled to WebAssembly: {result.stderr.strip()}")
+        return output.read_bytes()

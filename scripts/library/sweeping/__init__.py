@@ -1,0 +1,1 @@
+"""Many runs of an FMU, as rows of a Parquet file."""

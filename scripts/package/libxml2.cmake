@@ -1,0 +1,25 @@
+# Builds libxml2 from its source, for static linking: sets LIBXML2_LIBRARIES and LIBXML2_INCLUDE_DIRS.
+get_filename_component(root ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
+set(LIBXML2_SOURCE ${root}/build/libxml2 CACHE PATH "The source of libxml2, which scripts/package/libxml2 gets where it is not given")
+if(LIBXML2_SOURCE STREQUAL ${root}/build/libxml2)
+  execute_process(COMMAND ${root}/scripts/package/libxml2 RESULT_VARIABLE status)
+  if(NOT status EQUAL 0)
+    message(FATAL_ERROR "expected the source of libxml2 in ${LIBXML2_SOURCE}, or -DLIBXML2_SOURCE=...")
+  endif()
+endif()
+# Parts of libxml2 that lagc does not use.
+foreach(part FTP HTTP LZMA MODULES PROGRAMS PYTHON TESTS ZLIB)
+  set(LIBXML2_WITH_${part} OFF CACHE BOOL "" FORCE)
+endforeach()
+if(NOT CMAKE_SYSTEM_NAME STREQUAL Linux)
+  set(LIBXML2_WITH_ICONV OFF CACHE BOOL "" FORCE) # iconv would be an external library; libxml2 itself reads UTF-8, UTF-16 and ISO-8859-1
+endif()
+set(BUILD_SHARED_LIBS OFF)
+add_subdirectory(${LIBXML2_SOURCE} libxml2 EXCLUDE_FROM_ALL)
+# Removes the Windows version resource, which needs a resource compiler and is useless in a static library.
+get_target_property(sources LibXml2 SOURCES)
+list(FILTER sources EXCLUDE REGEX "\\.rc$")
+set_property(TARGET LibXml2 PROPERTY SOURCES ${sources})
+target_compile_definitions(LibXml2 INTERFACE LIBXML_STATIC)
+set(LIBXML2_LIBRARIES LibXml2)
+set(LIBXML2_INCLUDE_DIRS ${CMAKE_BINARY_DIR}/libxml2 ${LIBXML2_SOURCE}/include)
