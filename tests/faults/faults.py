@@ -424,7 +424,7 @@ PLANS = [
     ("if (half >= 0.5 * length) return true;", "if (half >= 0.1 * length) return true;", pytest("test_hills", "")),
     ("return bounce_is_lost(resolution, contact, rate) ? 0.0 : restitution;", "return restitution;",
      pytest("test_roundings_of_contacts", "friction_of_bounces")),
-    ("bool is_lifted = lifted != NULL && *lifted == indicator;", "bool is_lifted = false;", pytest("test_roundings_of_contacts", "lift_off")),
+    ("progress->departs = indicator_is_force(instance, indicator);", "progress->departs = false;", pytest("test_roundings_of_contacts", "lift_off")),
     ("if (sinks_without_acceleration(resolution, contact)) return true;", "", pytest("test_roundings_of_contacts", "slips_towards")),
     ("bool is_later = is_branch || indicator_is_force(search->instance, indicator);", "bool is_later = is_branch;", pytest("test_robots_on_ground", "limbs")),
     ("is_idle |= rests;", "", pytest("test_shared_frictions", "pressing_forces")),

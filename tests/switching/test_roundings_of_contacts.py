@@ -43,11 +43,14 @@ WAVE = """<system name="{name}"><parameter name="m" start="2"/><parameter name="
   <parameter name="A" start="1"/><parameter name="B" start="1"/><parameter name="w" start="3"/><coordinate name="x" velocity="v"/>
   <particle mass="m" x="x"/><contact name="stop" gap="x" restitution="e"/><friction name="rub" coordinate="x" force="F"/>
   <force coordinate="x">A*abs(mod(w*time, 2) - 1) - B</force><solver method="{method}"/></system>"""
+SLIPS = """<system name="{name}"><parameter name="m" start="2"/><parameter name="A" start="3"/><parameter name="w" start="3"/><coordinate name="x" velocity="v"/>
+  <particle mass="m" x="x"/><contact name="stop" gap="x"/><friction name="rub" coordinate="x" force="1"/><force coordinate="x">A*sin(w*time)</force>
+  <solver method="{method}"/></system>"""
 TEXTS = {f"{title}_{method}": text.format(name=f"{title}_{method}", method=method) for title, text, methods in [
     ("Spring", SPRING, ["taylor", "radau"]), ("Tiny", TINY, ["erk"]), ("Earth", EARTH, ["taylor", "erk", "bdf"]), ("Dome", DOME, ["taylor", "radau", "bdf", "erk"]),
     ("Crank", CRANK, ["taylor", "radau", "bdf"]), ("Slider", SLIDER, ["taylor"]), ("Pressed", PRESSED, ["radau", "bdf", "erk"]), ("Grazed", GRAZED, ["taylor", "radau", "bdf", "erk"]),
     ("Balanced", BALANCED, ["taylor"]), ("Feet", FEET, ["taylor"]),
-    ("Ramp", RAMP, ["taylor", "auto"]), ("Wave", WAVE, ["taylor", "auto", "radau"])
+    ("Ramp", RAMP, ["taylor", "auto"]), ("Wave", WAVE, ["taylor", "auto", "radau"]), ("Slips", SLIPS, ["taylor", "radau", "bdf", "erk"])
 ] for method in methods}  # fmt: skip
 
 
@@ -238,4 +241,19 @@ def test_a_body_that_slips_towards_the_open_stop_at_which_it_stands(method):
         instance = Instance(f"Wave_{method}").initialize({**values, "x": x}, tolerance=1e-9)
         instance.run(6, step)
         assert instance.get("x", "v") == pytest.approx(along_a_wave(6, x, **values), rel=1e-6, abs=1e-6), values
+        instance.free()
+
+
+@pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
+@pytest.mark.parametrize("method", ["taylor", "radau", "bdf", "erk"])
+def test_a_body_that_slips_away_from_the_stop(method, tolerance):
+    """The stop is open when friction reaches its limit; the gap grows by a jerk, at first less than the errors of the method."""
+    for m, A, w in [(2.8, 2.4, 4.5), (0.7, 1.3, 2.1), (1.9, 4.1, 5.8), (3.4, 1.8, 1.2), (0.5, 2.9, 3.3)]:
+        instance = Instance(f"Slips_{method}").initialize({"m": m, "A": A, "w": w}, tolerance=tolerance)
+        t = math.pi / 2 / w
+        instance.run(t, t / 7)
+        slip = math.asin(1 / A) / w
+        speed = (A / w * (math.cos(w * slip) - math.cos(w * t)) - (t - slip)) / m
+        x = (A / w * (math.cos(w * slip) * (t - slip) - (math.sin(w * t) - math.sin(w * slip)) / w) - (t - slip) ** 2 / 2) / m
+        assert instance.get("x", "v") == pytest.approx([x, speed], rel=100 * tolerance)
         instance.free()

@@ -141,14 +141,13 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
   double look_ahead = look_ahead_share * progress->distance;
-  const size_t *lifted = progress->has_lifted ? &progress->indicator : NULL;
   while (progress->searched < end) {
     double near = look_ahead > 0.0 ? fmin(end, progress->searched + look_ahead) : end;
     *time = NAN;
     const double *samples;
     bool is_sure = search_interval_shorten(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (search_for_event(instance, progress->searched, near, samples, lifted, TO_ROUNDING, time, indicator))
+    if (search_for_event(instance, progress->searched, near, samples, progress->departs, TO_ROUNDING, time, indicator))
       return true;
     look_ahead = 2.0 * (near - progress->searched);
     progress->searched = near;
@@ -186,7 +185,7 @@ static void search_further(struct Instance *instance, const struct Communication
   const double *samples;
   size_t indicator;
   if (search_interval_shorten(instance, from, &to, &samples)) {
-    bool happens = search_for_event(instance, from, to, samples, NULL, BEFORE_IT, &time, &indicator);
+    bool happens = search_for_event(instance, from, to, samples, false, BEFORE_IT, &time, &indicator);
     if (!happens) progress->searched = to;
     else if (!isnan(time)) progress->searched = from + share_before_event * (time - from);
   }
@@ -231,7 +230,7 @@ static void count_event(const struct Instance *instance, const struct Communicat
   progress->last = time - step->start;
   progress->count++;
   progress->indicator = indicator;
-  progress->has_lifted = is_of_contact(indicator) && indicator_is_force(instance, indicator);
+  progress->departs = indicator_is_force(instance, indicator);
   progress->searched = time;
 }
 

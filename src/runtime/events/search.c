@@ -332,15 +332,22 @@ static bool is_of_sliding(const struct Search *search, size_t indicator) {
          !indicator_is_force(search->instance, indicator);
 }
 
+/* True if the indicator is the gap of an open contact. */
+static bool is_of_gap(const struct Search *search, size_t indicator) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  return indicator >= contact_indicator(switches, 0) && indicator < friction_indicator(switches, 0) &&
+         !indicator_is_force(search->instance, indicator);
+}
+
 /*
  * Returns the value to which an indicator may fall without an event, from its value at the start. An event, or the
- * method, may have left it below 0. The method's errors count for a velocity that begins to slide and for a gap
- * that lifts.
+ * method, may have left it below 0. The method's errors count for a velocity that begins to slide. They also count for
+ * gaps after the limit of a force, where a contact lifts or a friction slips.
  */
-static double floor_of(const struct Search *search, size_t indicator, double start, const size_t *lifted) {
+static double floor_of(const struct Search *search, size_t indicator, double start, bool departs) {
   double error_bound = FLOOR_IN_ERROR_BOUND * search->error_bound[indicator], error = 0.0;
-  bool is_lifted = lifted != NULL && *lifted == indicator;
-  if (is_lifted || is_of_sliding(search, indicator)) error = solver_error(search->instance);
+  if ((departs && is_of_gap(search, indicator)) || is_of_sliding(search, indicator))
+    error = solver_error(search->instance);
   return start >= -error - error_bound && (error == 0.0 || start <= error + error_bound) ? fmin(start, -error) : 0.0;
 }
 
@@ -381,7 +388,7 @@ static double first_sample(const struct Instance *instance, double from, double 
   return first;
 }
 
-bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
+bool search_for_event(struct Instance *instance, double from, double to, const double *samples, bool departs,
                       enum Exactness exactness, double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
@@ -401,7 +408,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     search.projects = may_be_constrained(&search, i);
     if (search.projects) project_samples(&search, i, from, to);
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
-    search.floor = floor_of(&search, i, start, lifted);
+    search.floor = floor_of(&search, i, start, departs);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i] - search.floor;
     double found = sign == 0.0 ? first_departure(&search, i, from, to)
                                : first_fall_in(&search, i, sign, f, from, to, fmin(to, *time), DEPTH_LIMIT);

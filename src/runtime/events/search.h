@@ -18,11 +18,11 @@ size_t search_work_count(void);
 
 /*
  * Finds the first time in [from, to], within the solver's last step, at which an indicator changes its sign. samples:
- * as search_interval_shorten() gives them for this interval. lifted: the indicator of a contact that has just opened
- * without speed, whose gap may fall by the errors of the method; NULL for none. False if no indicator changes its sign.
+ * as search_interval_shorten() gives them for this interval. departs: the last event was the limit of a force, after
+ * which gaps may open without speed, and fall by the errors of the method. False if no indicator changes its sign.
  * *time is NAN if zeros cannot be separated.
  */
-bool search_for_event(struct Instance *instance, double from, double to, const double *samples, const size_t *lifted,
+bool search_for_event(struct Instance *instance, double from, double to, const double *samples, bool departs,
                       enum Exactness exactness, double *time, size_t *indicator);
 
 /*
