@@ -28,6 +28,11 @@ void append_line(struct Drawing *drawing, enum Look look, struct PicturePoint fr
   append_shape(drawing, look, false, (struct PicturePoint[]){from, to}, 2);
 }
 
+void append_label(struct Drawing *drawing, const char *text, struct PicturePoint point) {
+  drawing->labels = make_room(drawing->labels, drawing->label_count, sizeof *drawing->labels);
+  drawing->labels[drawing->label_count++] = (struct PictureLabel){text, point};
+}
+
 struct Rectangle rectangle_of(const struct Drawing *drawing) {
   struct Rectangle all = {{INFINITY, INFINITY}, {-INFINITY, -INFINITY}};
   for (size_t i = 0; i < drawing->count; i++)
@@ -39,18 +44,21 @@ struct Rectangle rectangle_of(const struct Drawing *drawing) {
   return all;
 }
 
+static void fit_point(struct PicturePoint *point, const struct Rectangle *all, double pixels) {
+  point->right = PICTURE_SIZE / 2.0 + pixels * (point->right - (all->least.right + all->most.right) / 2.0);
+  point->up = PICTURE_SIZE / 2.0 - pixels * (point->up - (all->least.up + all->most.up) / 2.0);
+}
+
 bool fit_drawing(struct Drawing *drawing) {
   const double margin = 14.0;
   struct Rectangle all = rectangle_of(drawing);
   double size = fmax(all.most.right - all.least.right, all.most.up - all.least.up);
-  double pixels = (PICTURE_SIZE - 2.0 * margin) / size;
+  drawing->pixels = (PICTURE_SIZE - 2.0 * margin) / size;
   for (size_t i = 0; i < drawing->count; i++)
-    for (size_t j = 0; j < drawing->shapes[i].count; j++) {
-      struct PicturePoint *point = &drawing->shapes[i].points[j];
-      point->right = PICTURE_SIZE / 2.0 + pixels * (point->right - (all.least.right + all.most.right) / 2.0);
-      point->up = PICTURE_SIZE / 2.0 - pixels * (point->up - (all.least.up + all.most.up) / 2.0);
-    }
-  return isnormal(size) && isnormal(pixels);
+    for (size_t j = 0; j < drawing->shapes[i].count; j++)
+      fit_point(&drawing->shapes[i].points[j], &all, drawing->pixels);
+  for (size_t i = 0; i < drawing->label_count; i++) fit_point(&drawing->labels[i].point, &all, drawing->pixels);
+  return isnormal(size) && isnormal(drawing->pixels);
 }
 
 static int compare_points(const void *first, const void *second) {

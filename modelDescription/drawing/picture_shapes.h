@@ -37,16 +37,32 @@ struct PictureShape {
   size_t count;
 };
 
-/* Shapes from the back to the front. */
+/* The name of an object at a point. */
+struct PictureLabel {
+  const char *text;
+  struct PicturePoint point;
+};
+
+/*
+ * Shapes from the back to the front; labels, axes and the scale are for sketches. axes: the directions of x, y and z in
+ * the picture, of length 1 or less. pixels: per m; 0 in a drawing without a scale.
+ */
 struct Drawing {
   struct PictureShape *shapes;
   size_t count;
+  struct PictureLabel *labels;
+  size_t label_count;
+  struct PicturePoint axes[3];
+  double pixels;
 };
 
 /* Append a polygon, filled or not, and a line; they copy the points. */
 void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const struct PicturePoint *points,
                   size_t count);
 void append_line(struct Drawing *drawing, enum Look look, struct PicturePoint from, struct PicturePoint to);
+
+/* Appends a label; it keeps the text. */
+void append_label(struct Drawing *drawing, const char *text, struct PicturePoint point);
 
 /* The bounding box of all points; least is greater than most without points. */
 struct Rectangle {
@@ -57,8 +73,8 @@ struct Rectangle {
 struct Rectangle rectangle_of(const struct Drawing *drawing);
 
 /*
- * Scales and centres the drawing in PICTURE_SIZE pixels, with x to the right and y down. Returns false if it has no
- * extent.
+ * Scales and centres the drawing in PICTURE_SIZE pixels, with x to the right and y down, and sets its scale. Returns
+ * false if it has no extent.
  */
 bool fit_drawing(struct Drawing *drawing);
 

@@ -61,7 +61,7 @@ static double clip(double coordinate) {
 /* Paints a shape, within its bounding box. */
 static void paint_shape(unsigned char *image, const struct PictureShape *shape) {
   const double scale = (double)SIDE / PICTURE_SIZE, width = looks[shape->look].width + 2.0;
-  struct Rectangle all = rectangle_of(&(struct Drawing){(struct PictureShape *)shape, 1});
+  struct Rectangle all = rectangle_of(&(struct Drawing){.shapes = (struct PictureShape *)shape, .count = 1});
   for (int row = (int)clip(scale * (all.least.up - width)); row < clip(scale * (all.most.up + width)); row++)
     for (int column = (int)clip(scale * (all.least.right - width)); column < clip(scale * (all.most.right + width));
          column++) {

@@ -10,8 +10,11 @@
 #include "shape_drawing.h"
 #include "solids.h"
 
-/* Objects up to which unconnected ones get a line from the origin, and up to which particles are large dots. */
-enum { MOST_WAYS = 8, MOST_DOTS = 60 };
+/*
+ * Objects up to which unconnected ones get a line from the origin, and up to which particles are large dots. Bodies up
+ * to which each has its name beside it.
+ */
+enum { MOST_WAYS = 8, MOST_DOTS = 60, MOST_LABELS = 8 };
 
 /* The visible parts of the system at its start values. */
 struct VisibleParts {
@@ -341,10 +344,25 @@ static bool draw_guesses(struct Drawing *drawing, const struct VisibleParts *vis
   return true;
 }
 
+/* Appends the names of the bodies, unless they are many, and the directions of the axes. */
+static void annotate(struct Drawing *drawing, const struct VisibleParts *visible) {
+  const struct SampledPositions *samples = &visible->samples;
+  size_t bodies = 0;
+  for (size_t i = 1; i < samples->object_count; i++) bodies += samples->objects[i].body != NULL;
+  for (size_t i = 1; i < samples->object_count && bodies <= MOST_LABELS; i++)
+    if (samples->objects[i].body != NULL) append_label(drawing, samples->objects[i].name, picture_point_of(visible, i));
+  for (int axis = 0; axis < 3; axis++) {
+    double direction[3] = {0.0, 0.0, 0.0};
+    direction[axis] = 1.0;
+    drawing->axes[axis] = projected(&visible->view, direction);
+  }
+}
+
 static bool draw_mechanism(struct Drawing *drawing, const struct Model *model) {
   struct VisibleParts visible = visible_parts_of(model);
   bool has_drawn = has_described_lines(&model->drawing) && draw_lines(drawing, &visible, model);
   bool is_seen = has_drawn || draw_guesses(drawing, &visible, model);
+  annotate(drawing, &visible);
   release_positions(&visible.samples);
   release(visible.values);
   release(visible.line_values);
@@ -365,12 +383,13 @@ static void append_signals(struct Drawing *drawing, size_t count, double from) {
 
 static void draw_block(struct Drawing *drawing, const struct Model *model) {
   const struct PicturePoint corners[5] = {{-1.2, -1.2}, {1.2, -1.2}, {1.2, 1.2}, {-1.2, 1.2}, {-1.2, -1.2}};
-  drawing->count = 0;
+  *drawing = (struct Drawing){.count = 0};
   append_shape(drawing, BOX, true, corners, 4);
   append_shape(drawing, BOX, false, corners, 5);
   append_signals(drawing, model->inputs.count, -1.9);
   append_signals(drawing, model->outputs.count + model->coordinates.count, 1.2);
   fit_drawing(drawing);
+  drawing->pixels = 0.0;
 }
 
 struct Drawing drawing_of(const struct Model *model) {

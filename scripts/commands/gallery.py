@@ -102,6 +102,7 @@ STYLE = """
 .sketch { display: block; width: 100%; height: 170px; }
 .sketch circle, .sketch polygon { fill: currentColor; }
 .sketch polyline { fill: none; stroke: currentColor; stroke-linecap: round; stroke-linejoin: round; }
+.sketch .notes { display: none; }
 .sketch .ground, .sketch .link { color: var(--bs-secondary-color); }
 .sketch .axis { color: var(--bs-border-color); }
 .sketch .body, .sketch .solid, .sketch .particle { color: var(--bs-link-color); }

@@ -48,6 +48,24 @@ def test_all_of_it_is_seen_and_the_page_shows_the_same(name):
     assert drawn(svg) == drawn(page[page.index('<svg class="sketch"') : page.index("</svg>")])
 
 
+def test_names_axes_and_scale_of_the_page(tmp_path):
+    """
+    The masses have their names beside them, and the scale is measured by the rods of 1 m. The icon has none of
+    these, and neither has a block.
+    """
+    for name in ("DoublePendulum", "PidController"):
+        assert fmu.lagc(fmu.ROOT / "fmu" / name / "system.xml", "-o", tmp_path / name).returncode == 0
+    page, block = ((tmp_path / name / "documentation" / "index.html").read_text() for name in ("DoublePendulum", "PidController"))
+    texts = {text: np.array([float(x), float(y)]) for x, y, text in re.findall(r'<text x="([^"]*)" y="([^"]*)">([^<]*)</text>', page)}
+    assert list(texts) == ["upper", "lower", "x", "y", "0.5 m"]
+    [lower], [upper] = shapes(tmp_path / "DoublePendulum" / "fmi3" / "icon.svg", "circle", "particle")
+    assert texts["upper"] - upper == pytest.approx([6, -5], abs=0.1) and texts["lower"] - lower == pytest.approx([6, -5], abs=0.1)
+    [along] = re.findall(r'<path d="M[\d. ]*l(\d[\d.]*) -?0\.0"/><text [^>]*>0\.5 m', page)
+    assert float(along) == pytest.approx(0.5 * np.linalg.norm(upper - lower), abs=0.2)
+    assert texts["x"][0] > texts["y"][0] and texts["y"][1] < texts["x"][1]
+    assert "<text" not in (tmp_path / "DoublePendulum" / "fmi3" / "icon.svg").read_text() + block
+
+
 @pytest.mark.parametrize("name", ["DoublePendulum", "ChainPendulum", "ElasticPendulum"])
 def test_the_png_is_the_svg(name):
     """Each particle has the position and the area of that in the SVG."""
