@@ -22,12 +22,34 @@ static int fill(enum FunctionName name, const struct Point *point, const struct 
   return instructions_run(&frame, interpreter.code[name]);
 }
 
-/* Does the same with given accelerations. */
-static void fill_with(enum FunctionName name, const struct Point *point, const double *acceleration, double *target) {
-  struct Frame frame = frame_of(point, NULL, target);
-  frame.base[SPACE_ACCELERATION] = (double *)acceleration;
-  instructions_run(&frame, interpreter.code[name]);
-}
+/* Define functions that only run their table: at a point, along a seed too, or with given accelerations. */
+#define AT_POINT(function, name)                                                                                       \
+  static int function(const struct Point *point, double *target) {                                                     \
+    return fill(name, point, NULL, target);                                                                            \
+  }
+#define ALONG_SEED(function, name)                                                                                     \
+  static int function(const struct Point *point, const struct Seed *seed, double *target) {                            \
+    return fill(name, point, seed, target);                                                                            \
+  }
+#define WITH_ACCELERATIONS(function, name)                                                                             \
+  static void function(const struct Point *point, const double *acceleration, double *target) {                        \
+    struct Frame frame = frame_of(point, NULL, target);                                                                \
+    frame.base[SPACE_ACCELERATION] = (double *)acceleration;                                                           \
+    instructions_run(&frame, interpreter.code[name]);                                                                  \
+  }
+AT_POINT(jacobian, FUNCTION_JACOBIAN)
+AT_POINT(accelerations, FUNCTION_ACCELERATIONS)
+AT_POINT(correct_velocities, FUNCTION_CORRECT_VELOCITIES)
+AT_POINT(start_velocities, FUNCTION_START_VELOCITIES)
+ALONG_SEED(directional, FUNCTION_DIRECTIONAL)
+ALONG_SEED(accelerations_along, FUNCTION_ACCELERATIONS_ALONG)
+ALONG_SEED(correct_positions, FUNCTION_CORRECT_POSITIONS)
+ALONG_SEED(start_positions, FUNCTION_START_POSITIONS)
+WITH_ACCELERATIONS(indicators, FUNCTION_INDICATORS)
+WITH_ACCELERATIONS(rounding_bounds, FUNCTION_ROUNDING_BOUNDS)
+WITH_ACCELERATIONS(switching_values, FUNCTION_SWITCHING_VALUES)
+WITH_ACCELERATIONS(resting_sums, FUNCTION_RESTING_SUMS)
+WITH_ACCELERATIONS(ball_distances, FUNCTION_BALL_DISTANCES)
 
 static int prepare(const double *parameter, double *parameter_constants) {
   const struct Point point = {.parameter = parameter};
@@ -50,67 +72,15 @@ static int derivatives(const struct Point *point, double *derivative) {
   return instructions_run(&frame, interpreter.code[FUNCTION_DERIVATIVES]);
 }
 
-static int directional(const struct Point *point, const struct Seed *seed, double *derivative) {
-  return fill(FUNCTION_DIRECTIONAL, point, seed, derivative);
-}
-
-static int jacobian(const struct Point *point, double *values) {
-  return fill(FUNCTION_JACOBIAN, point, NULL, values);
-}
-
 static void linear(const double *parameter, const double *parameter_constants, double *matrix) {
   const struct Point point = {.parameter = parameter, .parameter_constants = parameter_constants};
   fill(FUNCTION_LINEAR, &point, NULL, matrix);
-}
-
-static int accelerations(const struct Point *point, double *acceleration) {
-  return fill(FUNCTION_ACCELERATIONS, point, NULL, acceleration);
-}
-
-static int accelerations_along(const struct Point *point, const struct Seed *seed, double *acceleration) {
-  return fill(FUNCTION_ACCELERATIONS_ALONG, point, seed, acceleration);
-}
-
-static int correct_positions(const struct Point *point, const struct Seed *seed, double *correction) {
-  return fill(FUNCTION_CORRECT_POSITIONS, point, seed, correction);
-}
-
-static int correct_velocities(const struct Point *point, double *correction) {
-  return fill(FUNCTION_CORRECT_VELOCITIES, point, NULL, correction);
-}
-
-static int start_positions(const struct Point *point, const struct Seed *seed, double *correction) {
-  return fill(FUNCTION_START_POSITIONS, point, seed, correction);
-}
-
-static int start_velocities(const struct Point *point, double *correction) {
-  return fill(FUNCTION_START_VELOCITIES, point, NULL, correction);
 }
 
 static int respond(const struct Point *point, const double *impulse, double *response) {
   struct Frame frame = frame_of(point, NULL, response);
   frame.base[SPACE_SEED_ACCELERATION] = (double *)impulse;
   return instructions_run(&frame, interpreter.code[FUNCTION_RESPOND]);
-}
-
-static void indicators(const struct Point *point, const double *acceleration, double *indicator) {
-  fill_with(FUNCTION_INDICATORS, point, acceleration, indicator);
-}
-
-static void rounding_bounds(const struct Point *point, const double *acceleration, double *uncertainty) {
-  fill_with(FUNCTION_ROUNDING_BOUNDS, point, acceleration, uncertainty);
-}
-
-static void switching_values(const struct Point *point, const double *acceleration, double *value) {
-  fill_with(FUNCTION_SWITCHING_VALUES, point, acceleration, value);
-}
-
-static void resting_sums(const struct Point *point, const double *acceleration, double *sum) {
-  fill_with(FUNCTION_RESTING_SUMS, point, acceleration, sum);
-}
-
-static void ball_distances(const struct Point *point, const double *acceleration, double *distance) {
-  fill_with(FUNCTION_BALL_DISTANCES, point, acceleration, distance);
 }
 
 /* Binds the spaces of series, which are arrays of numbers for the interpreter. */
