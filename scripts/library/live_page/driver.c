@@ -28,6 +28,7 @@ static void write_message(fmi2ComponentEnvironment environment, fmi2String insta
                           fmi2String category, fmi2String format, ...) {
   (void)environment, (void)instance, (void)status, (void)category;
   size_t used = strlen(messages);
+  if (used > ROOM - 3) return; /* no room for a line break and the terminating zero */
   va_list arguments;
   va_start(arguments, format);
   vsnprintf(messages + used, ROOM - 1 - used, format, arguments);
