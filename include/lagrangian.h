@@ -162,6 +162,7 @@ struct BranchMetadata {
 struct ContactMetadata {
   size_t mode;       /* 1 while it is closed, else 0 */
   size_t constraint; /* active while the contact is closed */
+  size_t carried;    /* the force beside that of the constraint, in N; `mode` if the contact has none */
   const char *name;
 };
 

@@ -135,16 +135,17 @@ def stands(mu):
 
 
 def test_arch():
-    """It stands for 100 s with half more friction than the least by the linear program, and slides with 2 % less than that."""
+    """It stands for 100 s with the least friction by the linear program and a thousandth more, and slides with 2 % less."""
     low, high = 0.0, 2.0
     for _ in range(40):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if stands(middle) else (middle, high)
-    instance = fmu.Instance("BlockArch").initialize({"mu": 1.5 * high})
-    instance.step(100.0)
-    assert speed(instance) < 1e-12
-    assert sum(instance.get(*(f"{name}[{i}].force" for name in ("left", "right") for i in (1, 2)))) == pytest.approx(BLOCKS * WEIGHT, rel=1e-9)
-    instance.free()
+    for share in (1.001, 1.01, 1.1, 1.5):
+        instance = fmu.Instance("BlockArch").initialize({"mu": share * high})
+        instance.step(100.0)
+        assert speed(instance) < 1e-12
+        assert sum(instance.get(*(f"{name}[{i}].force" for name in ("left", "right") for i in (1, 2)))) == pytest.approx(BLOCKS * WEIGHT, rel=1e-9)
+        instance.free()
     instance = fmu.Instance("BlockArch").initialize({"mu": 0.98 * high})
     instance.step(0.05)
     assert speed(instance) > 1e-4

@@ -124,11 +124,14 @@ static void append_reactions(struct Interface *interface, const struct Model *mo
   }
 }
 
-/* Returns the force at a constraint's index, with the sliding force of a friction, which is not a constraint force. */
+/* Returns the force at a constraint's index, with what acts beside it: sliding forces, and forces that contacts carry. */
 static Node whole_force(const struct Model *model, size_t constraint, Node force) {
   for (size_t i = 0; i < model->switches.friction_count; i++)
     if (model->switches.frictions[i].constraint == constraint)
       return friction_force(model->graph, &model->switches.frictions[i], force);
+  for (size_t i = 0; i < model->switches.contact_count; i++)
+    if (model->switches.contacts[i].constraint == constraint)
+      return add(model->graph, force, model->switches.contacts[i].carried);
   return force;
 }
 

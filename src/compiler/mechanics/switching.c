@@ -89,7 +89,7 @@ static Node rate_of(const struct Model *model, Node node, const Node *seeds) {
 }
 
 static Node indicator_of_contact(const struct Model *model, const struct Contact *contact) {
-  return choose_node(model->graph, contact->mode, model->unknowns.forces[contact->constraint], contact->gap);
+  return choose_node(model->graph, contact->mode, whole_constraint_force(model, contact->constraint), contact->gap);
 }
 
 /* Returns an expression that is positive while the force is between the limits of both directions. */
@@ -415,6 +415,18 @@ Node without_branches(const struct Model *model, Node node) {
   return node;
 }
 
+/* Replaces the forces that contacts carry by 0: pages show the whole force of a contact as one symbol. */
+static Node without_carried_forces(const struct Model *model, Node node) {
+  struct Graph *graph = model->graph;
+  const struct Switches *switches = &model->switches;
+  if (!has_planes(switches)) return node;
+  Node *replacements = own_symbols(graph);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (switches->contacts[i].carried != ZERO) replacements[graph->vertices[switches->contacts[i].carried].left] = ZERO;
+  substitute(graph, &node, 1, replacements, &node);
+  return node;
+}
+
 Node as_written(const struct Model *model, Node node) {
-  return without_rests(model, without_branches(model, node));
+  return without_carried_forces(model, without_rests(model, without_branches(model, node)));
 }

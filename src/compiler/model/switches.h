@@ -24,6 +24,7 @@ struct Branch {
 struct Contact {
   size_t constraint; /* index among the model's constraints */
   Node mode, gap, restitution;
+  Node carried; /* with friction in a plane, a mode: the part of the force that acts beside the constraint; else ZERO */
 };
 
 /*

@@ -89,9 +89,9 @@ static void declare_constraint_forces(struct Model *model, struct Scope *scope) 
     char *name = constraint_force_name(constraint);
     struct Dimension dimension = early_force_dimension(constraint);
     int index = (int)(model->coordinates.count + i);
-    Node node = model->unknowns.forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
-    if (constraint->force_share == ZERO)
-      scope_define(scope, name, (struct Quantity){.node = node, .dimension = dimension}, constraint->line);
+    model->unknowns.forces[i] = scope_symbol(scope, ACCELERATION, index, name, dimension, 0);
+    struct Quantity force = {.node = whole_constraint_force(model, i), .dimension = dimension};
+    if (constraint->force_share == ZERO) scope_define(scope, name, force, constraint->line);
   }
 }
 

@@ -34,8 +34,9 @@ static void write_contacts(FILE *file, const struct SwitchTable *metadata) {
   fputs("extern const struct ContactLaws contact_laws;\n\nstatic const struct ContactMetadata contact_metadata[] = {",
         file);
   for (size_t i = 0; i < metadata->contact_count; i++) {
-    fprintf(file, "{%zu, %zu, ", metadata->contacts[i].mode, metadata->contacts[i].constraint);
-    write_name(file, metadata->contacts[i].name);
+    const struct ContactMetadata *contact = &metadata->contacts[i];
+    fprintf(file, "{%zu, %zu, %zu, ", contact->mode, contact->constraint, contact->carried);
+    write_name(file, contact->name);
   }
   fputs("};\n\n", file);
 }

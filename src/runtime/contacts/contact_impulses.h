@@ -34,9 +34,16 @@ static inline bool contact_is_closed(const struct Resolution *resolution, size_t
   return contact_holds(resolution->instance, contact);
 }
 
-/* Closes or opens a contact. */
-static inline void set_contact(struct Resolution *resolution, size_t contact, bool is_closed) {
-  resolution_set_mode(resolution, resolution->switches->contacts[contact].mode, is_closed ? 1.0 : 0.0);
+/* Closes or opens a contact. Its constraint has the whole force then. */
+void set_contact(struct Resolution *resolution, size_t contact, bool is_closed);
+
+/* Closes a contact that carries a force, to which its constraint adds what the load lacks. */
+void contact_carry(struct Resolution *resolution, size_t contact, double force);
+
+/* Returns the force that a contact carries beside its constraint. */
+static inline double carried_force(const struct Resolution *resolution, size_t contact) {
+  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
+  return metadata->carried != metadata->mode ? mode_of(resolution, metadata->carried) : 0.0;
 }
 
 /* Returns a part of a contact's values, such as CONTACT_GAP, from the last evaluation. */
@@ -47,7 +54,7 @@ static inline double contact_value(const struct Resolution *resolution, size_t c
 /* Returns the force of a closed contact; negative if it pulls. */
 static inline double contact_force(const struct Resolution *resolution, size_t contact) {
   size_t constraint = resolution->switches->contacts[contact].constraint;
-  return resolution->acceleration[lagrangian.coordinate_count + constraint];
+  return resolution->acceleration[lagrangian.coordinate_count + constraint] + carried_force(resolution, contact);
 }
 
 /* Returns the largest size of the forces of closed contacts. */

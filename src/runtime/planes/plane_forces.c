@@ -106,7 +106,7 @@ static void fill_rates_of_planes(struct PlaneForces *forces) {
   }
 }
 
-/* Sets the contacts. A contact that neither presses nor opens keeps its mode: others may share its force. */
+/* Sets the contacts. One that neither presses nor opens keeps its mode: others may share its force. */
 static void set_contacts(struct PlaneForces *forces, double none) {
   struct Resolution *resolution = forces->resolution;
   const struct ContactImpulses *impulses = &forces->impulses;
@@ -114,9 +114,21 @@ static void set_contacts(struct PlaneForces *forces, double none) {
     size_t contact = impulses->member[row];
     bool presses = forces->force[row] * impulses->delassus[row * impulses->count + row] > none;
     bool stays = contact_is_closed(resolution, contact) && forces->behind[row] <= none;
-    set_contact(resolution, contact, presses || stays);
+    if (presses) contact_carry(resolution, contact, forces->force[row]);
+    else set_contact(resolution, contact, stays);
     resolution->was_opened[contact] = presses || stays ? 0.0 : 1.0;
   }
+}
+
+/* Lets a friction stick with the force that was found. */
+static void let_carry(struct PlaneForces *forces, size_t row, struct PlaneState *state) {
+  const struct ContactImpulses *impulses = &forces->impulses;
+  const double load[] = {-forces->force[row], -forces->force[row + 1]};
+  size_t contacts = impulses->contact_count;
+  state->sliding = 0.0;
+  for (size_t i = 0; i < contacts; i++)
+    state->sliding += impulses->coefficient[(row - contacts) * contacts + i] * forces->force[i];
+  plane_carry(forces->resolution, state, load);
 }
 
 static void set_planes(struct PlaneForces *forces, double none) {
@@ -134,7 +146,7 @@ static void set_planes(struct PlaneForces *forces, double none) {
     else if (slides(forces, row)) plane_slide(resolution, &state);
     else if (hypot(forces->behind[row], forces->behind[row + 1]) > none)
       plane_slip(resolution, &state, &forces->behind[row]);
-    else plane_stick(resolution, &state);
+    else let_carry(forces, row, &state);
     row++; /* the friction across has the same mode */
   }
 }

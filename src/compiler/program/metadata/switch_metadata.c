@@ -30,6 +30,8 @@ static const struct ContactMetadata *contacts_of(const struct Program *program) 
   for (size_t i = 0; i < switches->contact_count; i++) {
     const struct Contact *contact = &switches->contacts[i];
     metadata[i] = (struct ContactMetadata){mode_index(program, contact->mode), contact->constraint,
+                                           contact->carried != ZERO ? mode_index(program, contact->carried)
+                                                                    : mode_index(program, contact->mode),
                                            name_of(program, contact->constraint)};
   }
   return metadata;

@@ -138,7 +138,10 @@ static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
     one.unit = copy_text("m");
     one.dimension = unit_of("m");
     append_contact(reader, one);
-    if (has_shape_friction(node)) declare_friction_of_contact(reader, &one);
+    if (!has_shape_friction(node)) continue;
+    struct Switches *switches = &reader->model->switches;
+    switches->contacts[switches->contact_count - 1].carried = new_mode(reader, one.name, "carried");
+    declare_friction_of_contact(reader, &one);
   }
 }
 
@@ -199,10 +202,12 @@ static struct Friction *friction_of_contact(struct Reader *reader, const struct 
 static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, const struct Contact *contact,
                                     const struct FrictionCoefficients *grip, const struct Slip *slip) {
   struct Friction *friction = friction_of_contact(reader, contact);
-  Node pressing = reader->model->unknowns.forces[contact->constraint];
+  Node pressing = whole_constraint_force(reader->model, contact->constraint);
   if (slip->along == ZERO && slip->across == ZERO)
     report_at(reader, node, "the shapes '%s' and '%s' cannot slide on each other; expected no friction",
               attribute(node, "between"), attribute(node, "and"));
+  const struct Gradient gradient = gradient_by_kinds(reader->model->graph, contact->gap, KIND(COORDINATE) | KIND(TIME));
+  add_virtual_work(reader->model, contact->carried, &gradient);
   friction[0].velocity = slip->along;
   friction[1].velocity = slip->across;
   friction->sliding = friction->sliding_back = multiply(reader->model->graph, grip->friction, pressing);
