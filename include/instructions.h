@@ -5,6 +5,9 @@
  * A table is a sequence of runs. A run is an opcode, the number of its instructions, and the spaces of their operands;
  * for CALL and CALL_OF_TWO the index of the function follows. Then come the operands of each instruction, the result
  * first. The opcode END ends the table. An operand is an index in its space; in rows of series it counts coefficients.
+ *
+ * SKIP has the number of words of its region in place of that of instructions. Then come its operand and the region,
+ * which is a sequence of runs.
  */
 #ifndef INSTRUCTIONS_H
 #define INSTRUCTIONS_H
@@ -87,6 +90,7 @@ enum Opcode {
   FACTOR,         /* factors block r; returns the number of the coordinate in which it is singular */
   SOLVE,          /* solves block r */
   LEAST_FORCES,   /* least-norm constraint forces in the solution of block r */
+  SKIP,           /* skips the region that follows unless a > 0 */
   SERIES_COPY,    /* a_k */
   SERIES_ZERO,    /* 0 */
   SERIES_SUM,     /* a_k + b_k */

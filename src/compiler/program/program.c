@@ -1,6 +1,7 @@
 #include "program/program.h"
 
 #include "base/memory.h"
+#include "program/codegen/regions.h"
 #include "program/costs.h"
 
 /*
@@ -96,19 +97,30 @@ static bool has_columns_in_parts(const struct Program *program) {
   return jacobian != NULL && jacobian->value == NULL && program->blocks.count == 0;
 }
 
+/* True if a table skips most of the function where its conditions fail, which statements would compute. */
+static bool is_mostly_regions(const struct IrFunction *ir) {
+  return ir != NULL && 2 * regions_length(ir) > ir->count;
+}
+
 static void choose_form(struct Program *program, enum CodeForm form) {
   const struct SeriesProgram *series = program->series;
   size_t length = series != NULL ? count_of(series->start) + count_of(series->order) : 0;
   bool all = form == TABLES || form == ALL_TABLES;
-  program->switches_are_table = form == ALL_TABLES;
   program->is_table = all || (form == BY_SIZE && instruction_count(program) > STATEMENT_LIMIT);
+  size_t switch_length = 0;
+  for (enum FunctionName i = LAGRANGIAN_IR_FUNCTIONS; i < IR_FUNCTION_COUNT; i++)
+    switch_length += count_of(program->ir_functions[i]);
+  program->switches_are_table =
+      form == ALL_TABLES || (form == BY_SIZE && program->is_table && switch_length > STATEMENT_LIMIT);
   program->series_is_table = all || (program->is_table && length > SERIES_STATEMENT_LIMIT);
   if (series != NULL && program->equations->method->series == ALL_TERMS)
     program->products = series->recurrences <= RECURRENCES_TOGETHER ? PRODUCTS_TOGETHER : PRODUCTS_LISTED;
   size_t limit = inertia_has_trees(program->equations->inertia) ? TREE_STATEMENT_LIMIT : DERIVATIVES_STATEMENT_LIMIT;
+  const struct IrFunction *derivatives = program->ir_functions[FUNCTION_DERIVATIVES],
+                          *directional = program->ir_functions[FUNCTION_DIRECTIONAL];
   program->derivatives_are_table =
-      all || (program->is_table && count_of(program->ir_functions[FUNCTION_DERIVATIVES]) > limit);
-  bool is_long = count_of(program->ir_functions[FUNCTION_DIRECTIONAL]) > DIRECTIONAL_STATEMENT_LIMIT;
+      all || (program->is_table && (count_of(derivatives) > limit || is_mostly_regions(derivatives)));
+  bool is_long = count_of(directional) > DIRECTIONAL_STATEMENT_LIMIT || is_mostly_regions(directional);
   program->directional_is_table = all || (program->is_table && (is_long || !has_columns_in_parts(program)));
 }
 

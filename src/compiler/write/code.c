@@ -241,7 +241,7 @@ static void write_as_statements(FILE *file, const struct Program *program) {
   if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) statements_output_series(file, program);
   statements_results(file, program);
-  switching_write(file, program);
+  switching_write(file, program, NULL);
   description_write(file, program, 0);
 }
 
@@ -253,7 +253,7 @@ static void write_as_tables(FILE *file, const struct Program *program) {
   else if (program->series != NULL) statements_series(file, program);
   if (program->output_series != NULL) instruction_tables_output_series(file, tables);
   instruction_tables_results(file, tables);
-  switching_write(file, program);
+  switching_write(file, program, tables);
   description_write(file, program, larger(encoding_work_count(tables), shared));
 }
 

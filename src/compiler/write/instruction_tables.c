@@ -80,6 +80,7 @@ void instruction_tables_function(FILE *file, const struct Encoding *encoding, en
             takes(name, "*c,") ? ", .parameter_constants = c" : "");
   begin_frame(file, takes(name, "*seed"));
   set_base(file, "TARGET", text->target);
+  if (text->accelerations == IN_ARGUMENT) set_base(file, "ACCELERATION", "(Real *)a");
   if (takes(name, "*da")) set_base(file, "SEED_ACCELERATION", "(Real *)da");
   if (takes(name, "*parameter_constants"))
     fprintf(file, "  frame.base[SPACE_LOCAL] = parameter_constants + %zu;\n", program->parameter_constants->count);

@@ -3,6 +3,7 @@
 #include "program/metadata/switch_metadata.h"
 #include "write/c_text.h"
 #include "write/description.h"
+#include "write/instruction_tables.h"
 #include "write/statements.h"
 
 static const char *name_of(bool truth) {
@@ -180,13 +181,21 @@ static void write_table(FILE *file, const struct Program *program, const struct 
   fputs("};\n\n", file);
 }
 
-void switching_write(FILE *file, const struct Program *program) {
+/* Writes the functions of struct SwitchTable. */
+static void write_functions(FILE *file, const struct Program *program, const struct Encoding *tables) {
+  for (enum FunctionName i = LAGRANGIAN_IR_FUNCTIONS; i < IR_FUNCTION_COUNT; i++) {
+    if (!has_function(program, i)) continue;
+    if (program->switches_are_table) instruction_tables_function(file, tables, i, program->ir_functions[i]);
+    else statements_function(file, program, i, "", program->ir_functions[i]);
+  }
+  if (program->watched_series != NULL) statements_watched_limit(file, program);
+}
+
+void switching_write(FILE *file, const struct Program *program, const struct Encoding *tables) {
   if (program->equations->switching == NULL) return;
   struct SwitchTable metadata = switch_metadata_of(program);
   fputs("extern const struct EventLaws event_laws;\n\n", file);
-  for (enum FunctionName i = LAGRANGIAN_IR_FUNCTIONS; i < IR_FUNCTION_COUNT; i++)
-    if (has_function(program, i)) statements_function(file, program, i, "", program->ir_functions[i]);
-  if (program->watched_series != NULL) statements_watched_limit(file, program);
+  write_functions(file, program, tables);
   write_branches(file, &metadata);
   write_contacts(file, &metadata);
   write_frictions(file, &metadata);

@@ -3,7 +3,7 @@
 
 #include <stdio.h>
 
-#include "program/program.h"
+#include "program/tables/encoding.h"
 
-/* Writes nothing if the system has no modes. */
-void switching_write(FILE *file, const struct Program *program);
+/* Writes nothing if the system has no modes. tables: NULL for a program of statements. */
+void switching_write(FILE *file, const struct Program *program, const struct Encoding *tables);

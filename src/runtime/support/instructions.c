@@ -132,6 +132,7 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
       break;
     case SOLVE: EACH(1, solve(frame, code[0]));
     case LEAST_FORCES: EACH(1, take_least_forces(frame, code[0]));
+    case SKIP: code += ANYWHERE(a[code[0]] > 0.0) ? 1 : 1 + count; break;
     default: return -1; /* lagc writes no other opcode */
     }
   }

@@ -31,6 +31,7 @@ static const struct OpcodeMetadata metadata[OPCODE_COUNT] = {
     [FACTOR] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
     [SOLVE] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
     [LEAST_FORCES] = {NULL, BLOCK, {NO_OPERAND}, 0, false},
+    [SKIP] = {NULL, BLOCK, {VALUE}, 0, false},
     [SERIES_COPY] = {"$1", COEFFICIENT, {COEFFICIENT}, 0, false},
     [SERIES_ZERO] = {"REAL(0.0)", COEFFICIENT, {NO_OPERAND}, 0, false},
     [SERIES_SUM] = {"$1 + $2", COEFFICIENT, {COEFFICIENT, COEFFICIENT}, 1, false},

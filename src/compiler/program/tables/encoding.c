@@ -104,13 +104,41 @@ static void append_run(struct WordList *words, const struct Encoding *encoding, 
   }
 }
 
-void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words) {
-  size_t *schedule = schedule_create(ir, &encoding->program->blocks);
+static void append_region(struct WordList *words, const struct Encoding *encoding, const struct Instruction *skip,
+                          const struct Region *region);
+
+/* Appends the runs of a function whose regions are separated. */
+static void append_runs(struct WordList *words, const struct Encoding *encoding,
+                        const struct SeparatedFunction *function) {
+  const struct IrFunction *ir = &function->outer;
+  size_t *schedule = schedule_create(function, &encoding->program->blocks);
   for (size_t first = 0, end = 0; first < ir->count; first = end) {
     const struct Instruction *instruction = &ir->instructions[schedule[first]];
+    end = first + 1;
     while (end < ir->count && same_run(instruction, &ir->instructions[schedule[end]])) end++;
-    append_run(words, encoding, ir, schedule, first, end);
+    if (instruction->opcode == SKIP)
+      append_region(words, encoding, instruction, &function->regions[instruction->result]);
+    else append_run(words, encoding, ir, schedule, first, end);
   }
+  release(schedule);
+}
+
+/* Appends SKIP, with the number of words of its region in place of that of instructions, and the region. */
+static void append_region(struct WordList *words, const struct Encoding *encoding, const struct Instruction *skip,
+                          const struct Region *region) {
+  append_word(words, SKIP);
+  size_t length = words->count;
+  append_word(words, 0);
+  append_word(words, spaces_of(skip));
+  append_word(words, index_of(encoding, region->condition));
+  size_t first = words->count;
+  append_runs(words, encoding, &(struct SeparatedFunction){.outer = region->ir});
+  words->items[length] = (uint32_t)(words->count - first);
+}
+
+void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words) {
+  struct SeparatedFunction separated = regions_separate(ir);
+  append_runs(words, encoding, &separated);
   append_word(words, END);
 }
 

@@ -2,6 +2,7 @@
  * Level scheduling. The level of an instruction is 1 + the highest level that it must follow. It follows the last
  * writes of its operands, and the last writes and reads of the slot that its result overwrites. Instructions of one
  * level are independent and are sorted by opcode, function and spaces into runs. One pass and one sort: O(n log n).
+ * SKIP accesses all slots of its region.
  */
 #include "program/tables/schedule.h"
 
@@ -25,13 +26,18 @@ static void extend(struct Accesses *accesses, Slot slot) {
   if (index_in(slot) >= accesses->count[space_of(slot)]) accesses->count[space_of(slot)] = index_in(slot) + 1;
 }
 
-static struct Accesses accesses_create(const struct IrFunction *ir, const struct LoopedBlocks *blocks) {
-  struct Accesses accesses = {0};
+static void extend_to_slots(struct Accesses *accesses, const struct IrFunction *ir) {
   for (size_t i = 0; i < ir->count; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
-    if (opcode_has_result(instruction->opcode)) extend(&accesses, instruction->result);
-    for (int j = 0; j < opcode_arity(instruction->opcode); j++) extend(&accesses, instruction->operands[j]);
+    if (opcode_has_result(instruction->opcode)) extend(accesses, instruction->result);
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++) extend(accesses, instruction->operands[j]);
   }
+}
+
+static struct Accesses accesses_create(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks) {
+  struct Accesses accesses = {0};
+  extend_to_slots(&accesses, &function->outer);
+  for (size_t i = 0; i < function->region_count; i++) extend_to_slots(&accesses, &function->regions[i].ir);
   if (blocks->mass_count > accesses.count[SPACE_MASS]) accesses.count[SPACE_MASS] = blocks->mass_count;
   if (blocks->right_side_count > accesses.count[SPACE_RIGHT_SIDE])
     accesses.count[SPACE_RIGHT_SIDE] = blocks->right_side_count;
@@ -63,12 +69,9 @@ static size_t level_of_block(const struct Accesses *accesses, const struct Loope
   return level;
 }
 
-/* Returns the level of an instruction, above the given level, and records its accesses. */
-static size_t level_of(const struct Accesses *accesses, const struct Instruction *instruction,
-                       const struct LoopedBlocks *blocks, size_t level) {
+/* Returns the larger one of the level and of those that the instruction must follow. */
+static size_t level_before(const struct Accesses *accesses, const struct Instruction *instruction, size_t level) {
   const struct OpcodeMetadata *metadata = opcode_metadata(instruction->opcode);
-  if (metadata->result == BLOCK)
-    return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR, level);
   for (int j = 0; j < opcode_arity(instruction->opcode); j++)
     if (metadata->operands[j] != ROW_OF_PAST)
       level = larger(level, access_of(accesses, instruction->operands[j])->written);
@@ -76,12 +79,30 @@ static size_t level_of(const struct Accesses *accesses, const struct Instruction
     const struct Access *result = access_of(accesses, instruction->result);
     level = larger(level, larger(result->written, result->read));
   }
-  level++;
+  return level;
+}
+
+static void record_accesses(const struct Accesses *accesses, const struct Instruction *instruction, size_t level) {
+  const struct OpcodeMetadata *metadata = opcode_metadata(instruction->opcode);
   for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
     struct Access *operand = access_of(accesses, instruction->operands[j]);
     if (metadata->operands[j] != ROW_OF_PAST) operand->read = larger(operand->read, level);
   }
   if (opcode_has_result(instruction->opcode)) access_of(accesses, instruction->result)->written = level;
+}
+
+/* Returns the level of an instruction, above the given level, and records its accesses. */
+static size_t level_of(const struct Accesses *accesses, const struct Instruction *instruction,
+                       const struct SeparatedFunction *function, const struct LoopedBlocks *blocks, size_t level) {
+  bool skips = instruction->opcode == SKIP;
+  if (!skips && opcode_metadata(instruction->opcode)->result == BLOCK)
+    return level_of_block(accesses, &blocks->items[instruction->result], instruction->opcode == FACTOR, level);
+  const struct IrFunction *region = skips ? &function->regions[instruction->result].ir : NULL;
+  level = level_before(accesses, instruction, level);
+  for (size_t i = 0; skips && i < region->count; i++) level = level_before(accesses, &region->instructions[i], level);
+  level++;
+  record_accesses(accesses, instruction, level);
+  for (size_t i = 0; skips && i < region->count; i++) record_accesses(accesses, &region->instructions[i], level);
   return level;
 }
 
@@ -116,15 +137,16 @@ uint32_t spaces_of(const struct Instruction *instruction) {
   return spaces;
 }
 
-size_t *schedule_create(const struct IrFunction *ir, const struct LoopedBlocks *blocks) {
-  struct Accesses accesses = accesses_create(ir, blocks);
+size_t *schedule_create(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks) {
+  const struct IrFunction *ir = &function->outer;
+  struct Accesses accesses = accesses_create(function, blocks);
   struct ScheduledInstruction *scheduled = allocate(ir->count, sizeof *scheduled);
   size_t *order = allocate(ir->count, sizeof *order);
   size_t last_check = 0;
   for (size_t i = 0; i < ir->count; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
     bool checks = may_return(instruction->opcode);
-    size_t level = level_of(&accesses, instruction, blocks, checks ? last_check : 0);
+    size_t level = level_of(&accesses, instruction, function, blocks, checks ? last_check : 0);
     if (checks) last_check = level;
     scheduled[i] = (struct ScheduledInstruction){level, i, spaces_of(instruction), instruction};
   }
@@ -136,6 +158,6 @@ size_t *schedule_create(const struct IrFunction *ir, const struct LoopedBlocks *
 }
 
 bool same_run(const struct Instruction *first, const struct Instruction *second) {
-  return first->opcode == second->opcode && first->function == second->function &&
+  return first->opcode != SKIP && first->opcode == second->opcode && first->function == second->function &&
          spaces_of(first) == spaces_of(second);
 }

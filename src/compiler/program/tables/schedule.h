@@ -3,10 +3,11 @@
  */
 #pragma once
 
+#include "program/codegen/regions.h"
 #include "program/expressions/accelerations.h"
 
-/* Returns the indices of the function's instructions in the order of execution. */
-size_t *schedule_create(const struct IrFunction *ir, const struct LoopedBlocks *blocks);
+/* Returns the indices of the instructions outside of regions, in the order of execution. */
+size_t *schedule_create(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks);
 
 /* Returns the spaces of result and operands, packed as in a table; equal for all instructions of a run. */
 uint32_t spaces_of(const struct Instruction *instruction);

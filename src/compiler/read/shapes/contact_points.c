@@ -139,12 +139,16 @@ static void plane_contacts(const struct ShapePair *pair, struct ContactPoints *c
   struct Graph *graph = pair->graph;
   struct BallCentres points = points_of(graph, pair->first->shape);
   struct Vector normal = axis_of(pair, pair->second), ground = middle_of(pair, pair->second);
+  contacts->carrier = pair->first;
+  contacts->below = vector_scale(graph, negate(graph, points.radius), normal);
   for (size_t i = 0; i < points.count; i++) {
     struct Vector centre = position_at(graph, &pair->first->pose, points.positions[i]);
     Node height = vector_dot(graph, normal, vector_subtract(graph, centre, ground));
-    struct Vector down = vector_scale(graph, negate(graph, points.radius), normal);
-    contacts->items[contacts->count++] =
-        (struct ContactPoint){vector_add(graph, centre, down), normal, subtract(graph, height, points.radius), ZERO};
+    contacts->items[contacts->count++] = (struct ContactPoint){.point = vector_add(graph, centre, contacts->below),
+                                                               .normal = normal,
+                                                               .gap = subtract(graph, height, points.radius),
+                                                               .distance = ZERO,
+                                                               .offset = points.positions[i]};
   }
 }
 
@@ -165,8 +169,10 @@ static void ellipsoid_contact(const struct ShapePair *pair, struct ContactPoints
   lowest =
       rotated_by(pair, pair->first, vector_scale(graph, negate(graph, power_number(graph, support, -1.0)), lowest));
   Node height = vector_dot(graph, normal, vector_subtract(graph, centre, middle_of(pair, pair->second)));
-  contacts->items[contacts->count++] =
-      (struct ContactPoint){vector_add(graph, centre, lowest), normal, subtract(graph, height, support), ZERO};
+  contacts->items[contacts->count++] = (struct ContactPoint){.point = vector_add(graph, centre, lowest),
+                                                             .normal = normal,
+                                                             .gap = subtract(graph, height, support),
+                                                             .distance = ZERO};
 }
 
 /*
@@ -179,7 +185,8 @@ static void append_ball_contact(const struct ShapePair *pair, struct Vector firs
   struct Vector normal = vector_scale(graph, power_number(graph, distance, -1.0), between);
   struct Vector point = vector_subtract(graph, first, vector_scale(graph, radius, normal));
   Node gap = subtract(graph, subtract(graph, distance, radius), second_radius);
-  contacts->items[contacts->count++] = (struct ContactPoint){point, normal, gap, distance};
+  contacts->items[contacts->count++] =
+      (struct ContactPoint){.point = point, .normal = normal, .gap = gap, .distance = distance};
 }
 
 /* Clamps a length to the interval of the size `whole` about 0. */
@@ -301,8 +308,8 @@ struct ContactPoints contact_points_of(struct Reader *reader, long line, const s
   bool is_exchanged = append_contacts == NULL;
   struct ShapePair pair = {reader->scope, graph, line, is_exchanged ? second : first, is_exchanged ? first : second};
   if (is_exchanged) append_contacts = functions[second->shape->type][first->shape->type];
-  struct ContactPoints contacts = {allocate(count_contact_points(first->shape, second->shape), sizeof *contacts.items),
-                                   0};
+  struct ContactPoints contacts = {
+      .items = allocate(count_contact_points(first->shape, second->shape), sizeof *contacts.items)};
   append_contacts(&pair, &contacts);
   for (size_t i = 0; i < contacts.count && is_exchanged; i++)
     contacts.items[i].normal = vector_scale(graph, graph_constant(graph, -1.0), contacts.items[i].normal);

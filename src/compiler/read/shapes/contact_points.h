@@ -9,17 +9,21 @@ struct ContactPoint {
   struct Vector normal; /* unit normal, pointing to the first shape */
   Node gap;             /* m, negative if the shapes overlap */
   Node distance;        /* m, from the centre of a ball to the other shape: without a normal at 0; ZERO for planes */
-};
-
-struct ContactPoints {
-  struct ContactPoint *items;
-  size_t count;
+  struct Vector offset; /* m, of the centre along the carrier's axes, if there is a carrier */
 };
 
 /* A shape with its pose, at zero displacements. */
 struct ContactSide {
   const struct ContactShape *shape;
   struct Pose pose; /* of the shape's frame or particle */
+};
+
+/* Points of a shape on a plane are those of balls whose centres are fixed in the shape's frame, its carrier. */
+struct ContactPoints {
+  struct ContactPoint *items;
+  size_t count;
+  const struct ContactSide *carrier; /* NULL if the points move in both frames */
+  struct Vector below;               /* m, from the centres to the points, along the base's axes */
 };
 
 /* Returns a shape with its pose. line: for messages about displacements. */

@@ -17,10 +17,20 @@ struct CompliantLaw {
   Node stiffness, damping, friction, creep;
 };
 
+/*
+ * The velocity of the first shape relative to the second at points that a carrier has, along the base's axes. It is
+ * common + by_offset times the offset of the point's ball, which shares what the points of a shape have in common.
+ */
+struct SlidingField {
+  struct Vector common;
+  struct Matrix by_offset;
+};
+
 /* Two shapes with their poses, and the points at which they may touch. */
 struct ShapeContact {
   struct ContactSide first, second;
   struct ContactPoints contacts;
+  struct SlidingField sliding; /* if the points have a carrier */
 };
 
 bool is_of_shapes(xmlNodePtr node) {
@@ -97,19 +107,46 @@ static struct Vector velocity_of_point(struct Graph *graph, const struct Contact
   return matrix_apply(graph, &side->pose.rotation, velocity_at(graph, &side->pose, offset, none));
 }
 
+/* Returns the angular velocity of the first shape relative to the second, along the base's axes. */
+static struct Vector relative_spin(struct Graph *graph, const struct ShapeContact *contact) {
+  const struct Pose *first = &contact->first.pose, *second = &contact->second.pose;
+  return vector_subtract(graph, matrix_apply(graph, &first->rotation, first->angular_velocity),
+                         matrix_apply(graph, &second->rotation, second->angular_velocity));
+}
+
+/* Returns column i of the rotation matrix of a pose: an axis of its frame, along the base's axes. */
+static struct Vector axis_of_pose(const struct Pose *pose, int i) {
+  return (struct Vector){
+      {pose->rotation.row[0].along[i], pose->rotation.row[1].along[i], pose->rotation.row[2].along[i]}};
+}
+
+/* Returns the field v + W x (R offset + below), with the velocity v at the carrier's origin and the spin W. */
+static struct SlidingField sliding_field_of(struct Graph *graph, const struct ShapeContact *contact) {
+  const struct Pose *carrier = &contact->contacts.carrier->pose;
+  struct Vector spin = relative_spin(graph, contact);
+  struct Vector velocity = vector_subtract(graph, velocity_of_point(graph, &contact->first, carrier->origin),
+                                           velocity_of_point(graph, &contact->second, carrier->origin));
+  struct SlidingField field = {.common =
+                                   vector_add(graph, velocity, vector_cross(graph, spin, contact->contacts.below))};
+  for (int i = 0; i < 3; i++) {
+    struct Vector column = vector_cross(graph, spin, axis_of_pose(carrier, i));
+    for (int j = 0; j < 3; j++) field.by_offset.row[j].along[i] = column.along[j];
+  }
+  return field;
+}
+
 /* Returns the velocity of the first shape relative to the second one at a contact point, along the base's axes. */
 static struct Vector sliding_of_contact(struct Graph *graph, const struct ShapeContact *contact,
                                         const struct ContactPoint *point) {
+  if (contact->contacts.carrier != NULL)
+    return vector_add(graph, contact->sliding.common, matrix_apply(graph, &contact->sliding.by_offset, point->offset));
   return vector_subtract(graph, velocity_of_point(graph, &contact->first, point->point),
                          velocity_of_point(graph, &contact->second, point->point));
 }
 
 /* True if coordinates move the shapes relative to each other at the contact point: in translation or rotation. */
 static bool moves_contact(struct Graph *graph, const struct ShapeContact *contact, const struct ContactPoint *point) {
-  const struct Pose *first = &contact->first.pose, *second = &contact->second.pose;
-  struct Vector spin = vector_subtract(graph, matrix_apply(graph, &first->rotation, first->angular_velocity),
-                                       matrix_apply(graph, &second->rotation, second->angular_velocity));
-  struct Vector sliding = sliding_of_contact(graph, contact, point);
+  struct Vector spin = relative_spin(graph, contact), sliding = sliding_of_contact(graph, contact, point);
   bool moves = graph_depends_on(graph, point->gap, COORDINATE);
   for (int i = 0; i < 3; i++)
     moves |= graph_depends_on(graph, sliding.along[i], VELOCITY) || graph_depends_on(graph, spin.along[i], VELOCITY);
@@ -157,6 +194,7 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   contact->first = contact_side_of(reader, line, shapes[0]);
   contact->second = contact_side_of(reader, line, shapes[1]);
   contact->contacts = contact_points_of(reader, line, &contact->first, &contact->second);
+  if (contact->contacts.carrier != NULL) contact->sliding = sliding_field_of(reader->model->graph, contact);
   expect_centres_outside(reader, node, contact);
   return check_motion(reader, node, contact);
 }
@@ -189,12 +227,11 @@ struct FrictionCoefficients read_grip(struct Reader *reader, xmlNodePtr node) {
 
 /*
  * Returns the normal force stiffness depth (1 + damping d depth/dt) during contact, and 0 if that is negative: contacts
- * do not pull.
+ * do not pull. is_apart: positive where there is no contact.
  */
-static Node pressing_force(struct Reader *reader, long line, const struct CompliantLaw *law, Node gap) {
+static Node pressing_force(struct Reader *reader, long line, const struct CompliantLaw *law, Node gap, Node is_apart) {
   struct Scope *scope = reader->scope;
   struct Graph *graph = scope->graph;
-  Node is_apart = branch_of(scope, gap, "the gap of the contact", line);
   Node rate = negate(graph, total_time_derivative(scope, gap));
   Node factor = add(graph, ONE, multiply(graph, law->damping, rate));
   if (law->damping != ZERO) factor = piecewise_function(scope, MAXIMUM, factor, ZERO, line);
@@ -219,9 +256,67 @@ static struct Vector force_of_contact(struct Graph *graph, const struct Complian
   return vector_subtract(graph, force, vector_scale(graph, factor, sliding));
 }
 
-/* Adds a force at a point of a shape to its frame or particle. */
-static void add_force_on(struct Reader *reader, long line, const struct ContactSide *side, struct Vector point,
-                         struct Vector force) {
+/* The sums over all points: of the normal forces, of the forces on the first shape, and what its torques need. */
+struct ContactLoad {
+  Node pressing;
+  struct Vector force;
+  struct Vector moments[3]; /* sums of the forces times a component of the offset, if the points have a carrier */
+};
+
+static void add_to_load(struct Graph *graph, struct ContactLoad *load, const struct ContactPoint *point, Node pressing,
+                        struct Vector force) {
+  load->pressing = add(graph, load->pressing, pressing);
+  load->force = vector_add(graph, load->force, force);
+  for (int i = 0; i < 3; i++)
+    load->moments[i] = vector_add(graph, load->moments[i], vector_scale(graph, point->offset.along[i], force));
+}
+
+/* Makes the load 0 without its computation where no point touches, so that shapes out of reach cost nothing. */
+static void guard_load(struct Graph *graph, struct ContactLoad *load, Node touches) {
+  load->pressing = function(graph, GUARD, touches, load->pressing);
+  for (int i = 0; i < 3; i++) {
+    load->force.along[i] = function(graph, GUARD, touches, load->force.along[i]);
+    for (int j = 0; j < 3; j++) load->moments[i].along[j] = function(graph, GUARD, touches, load->moments[i].along[j]);
+  }
+}
+
+/* Returns the load. A point is apart where its mode is 1, so that the modes of n points add up to n unless one touches. */
+static struct ContactLoad load_of_contact(struct Reader *reader, long line, const struct CompliantLaw *law,
+                                          const struct ShapeContact *contact, Node *touches) {
+  struct Graph *graph = reader->model->graph;
+  struct Vector none = {{ZERO, ZERO, ZERO}};
+  struct ContactLoad load = {ZERO, none, {none, none, none}};
+  *touches = graph_constant(graph, (double)contact->contacts.count);
+  for (size_t i = 0; i < contact->contacts.count; i++) {
+    const struct ContactPoint *point = &contact->contacts.items[i];
+    Node is_apart = branch_of(reader->scope, point->gap, "the gap of the contact", line);
+    Node pressing = pressing_force(reader, line, law, point->gap, is_apart);
+    add_to_load(graph, &load, point, pressing, force_of_contact(graph, law, contact, point, pressing));
+    *touches = subtract(graph, *touches, is_apart);
+  }
+  guard_load(graph, &load, *touches);
+  return load;
+}
+
+/*
+ * Returns the torque of the load about the origin of a side. A carrier's points have the lever arms R offset + below:
+ * the sum over i of axis i x moment i, and below x force. Otherwise there is one point.
+ */
+static struct Vector torque_of_load(struct Graph *graph, const struct ContactPoints *points,
+                                    const struct ContactSide *side, const struct ContactLoad *load) {
+  const struct ContactSide *carrier = points->carrier;
+  if (carrier == NULL)
+    return vector_cross(graph, vector_subtract(graph, points->items[0].point, side->pose.origin), load->force);
+  struct Vector arm = vector_add(graph, vector_subtract(graph, carrier->pose.origin, side->pose.origin), points->below);
+  struct Vector torque = vector_cross(graph, arm, load->force);
+  for (int i = 0; i < 3; i++)
+    torque = vector_add(graph, torque, vector_cross(graph, axis_of_pose(&carrier->pose, i), load->moments[i]));
+  return torque;
+}
+
+/* Adds the load, or with sign -1 its opposite, to the frame or particle of a side. */
+static void add_load_on(struct Reader *reader, long line, const struct ContactSide *side, double sign,
+                        const struct ContactPoints *points, const struct ContactLoad *load) {
   struct Graph *graph = reader->model->graph;
   const struct Mechanism *mechanism = &reader->model->mechanism;
   const struct ContactShape *shape = side->shape;
@@ -229,11 +324,11 @@ static void add_force_on(struct Reader *reader, long line, const struct ContactS
   bool is_particle = shape->particle != NO_PARTICLE;
   for (int i = 0; i < 3; i++) {
     Node position = is_particle ? mechanism->bodies[shape->particle].displaced[i] : frame->pose.origin.along[i];
-    add_force_along(reader, line, shape->name, position, force.along[i]);
+    add_force_along(reader, line, shape->name, position, scale(graph, sign, load->force.along[i]));
   }
   if (is_particle) return;
-  struct Vector lever_arm = vector_subtract(graph, point, side->pose.origin);
-  add_torque_on(reader, line, vector_cross(graph, lever_arm, force), frame);
+  struct Vector torque = torque_of_load(graph, points, side, load);
+  add_torque_on(reader, line, vector_scale(graph, graph_constant(graph, sign), torque), frame);
 }
 
 /* Lets messages name the contact where the centre of its ball comes into the other shape. */
@@ -260,6 +355,19 @@ static void append_force(struct Reader *reader, xmlNodePtr node, Node force) {
   append_variable(&reader->model->mechanism.element_variables, variable);
 }
 
+/* Adds the load to both shapes. Its generalized forces are guarded, too. */
+static void add_load(struct Reader *reader, long line, const struct ShapeContact *contact,
+                     const struct ContactLoad *load, Node touches) {
+  struct Model *model = reader->model;
+  struct Quantity *sums = model->forces.along;
+  model->forces.along = allocate(model->coordinates.count, sizeof *model->forces.along);
+  add_load_on(reader, line, &contact->first, 1.0, &contact->contacts, load);
+  add_load_on(reader, line, &contact->second, -1.0, &contact->contacts, load);
+  for (size_t i = 0; i < model->coordinates.count; i++)
+    add_term(model, &sums[i], function(model->graph, GUARD, touches, model->forces.along[i].node));
+  model->forces.along = sums;
+}
+
 void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
   struct Graph *graph = reader->model->graph;
   struct ShapeContact contact;
@@ -272,15 +380,9 @@ void read_compliant_contact(struct Reader *reader, xmlNodePtr node) {
     report_at(reader, node, "the creep of a <contact> is 0; expected a speed above 0, such as 1e-4 m/s");
   if (!read_contact_of_shapes(reader, node, &contact)) return;
   reader->model->forces.any = true;
-  Node sum = ZERO;
-  for (size_t i = 0; i < contact.contacts.count; i++) {
-    const struct ContactPoint *point = &contact.contacts.items[i];
-    Node pressing = pressing_force(reader, line, &law, point->gap);
-    struct Vector force = force_of_contact(graph, &law, &contact, point, pressing);
-    add_force_on(reader, line, &contact.first, point->point, force);
-    add_force_on(reader, line, &contact.second, point->point, vector_scale(graph, graph_constant(graph, -1.0), force));
-    note_ball(reader, node, point);
-    sum = add(graph, sum, pressing);
-  }
-  append_force(reader, node, sum);
+  Node touches;
+  struct ContactLoad load = load_of_contact(reader, line, &law, &contact, &touches);
+  for (size_t i = 0; i < contact.contacts.count; i++) note_ball(reader, node, &contact.contacts.items[i]);
+  add_load(reader, line, &contact, &load, touches);
+  append_force(reader, node, load.pressing);
 }

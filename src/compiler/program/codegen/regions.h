@@ -1,0 +1,26 @@
+/*
+ * Regions: instructions whose results only guards with one condition use. Where it is not positive, a table skips them:
+ * for example the forces of a shape that touches nothing.
+ */
+#pragma once
+
+#include "program/codegen/ir.h"
+
+/* Instructions in their order, which are needed only where the condition is positive. */
+struct Region {
+  Slot condition;
+  struct IrFunction ir;
+};
+
+/* A function's regions, and its other instructions with an instruction SKIP in place of each region. */
+struct SeparatedFunction {
+  struct IrFunction outer; /* the result of SKIP is the region's index, its operand the condition */
+  struct Region *regions;
+  size_t region_count;
+};
+
+/* Separates the regions of a function that is not a series. */
+struct SeparatedFunction regions_separate(const struct IrFunction *ir);
+
+/* Returns the number of instructions in regions. */
+size_t regions_length(const struct IrFunction *ir);
