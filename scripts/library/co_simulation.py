@@ -20,6 +20,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.simulation import Recorder, apply_start_values, instantiate_fmu, settable_in_initialization_mode, settable_in_instantiated
 
 from .feedback import Feedback
+from .loading import loading
 from .problem import Problem
 from .signals import REAL, value
 
@@ -367,7 +368,8 @@ def co_simulate(archive, description, start_values, signals, output, interval, s
         abilities = description.coSimulation
         supplier = Supplier() if is_third and signals and abilities.providesIntermediateUpdate and abilities.canGetAndSetFMUstate else None
         within = {"intermediate_update": supplier, "required_intermediate_variables": [v.valueReference for v in signals.variables]} if supplier else {}
-        fmu = instantiate_fmu(folder, description, "CoSimulation", visible, debug_logging, log, fmi_call_logger, None, has_events, has_events, **within)
+        with loading():
+            fmu = instantiate_fmu(folder, description, "CoSimulation", visible, debug_logging, log, fmi_call_logger, None, has_events, has_events, **within)
         recorder = None
         try:
             slave = Slave3(fmu, description, signals, supplier) if is_third else Slave2(fmu, description, signals)

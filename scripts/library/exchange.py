@@ -14,6 +14,7 @@ from fmpy.fmi1 import FMICallException
 from fmpy.simulation import instantiate_fmu
 
 from .co_simulation import NEAR, Slave
+from .loading import loading
 
 
 class Failed(Exception):
@@ -73,7 +74,8 @@ def exchange(archive, description, start_values, signals, output, interval, star
     times = {"start_time": start, "stop_time": stop, "output_interval": interval}
     folder = extract(archive)
     try:
-        fmu = instantiate_fmu(folder, description, "ModelExchange", visible, debug_logging, logger, fmi_call_logger)
+        with loading():
+            fmu = instantiate_fmu(folder, description, "ModelExchange", visible, debug_logging, logger, fmi_call_logger)
         try:
             if table is not None:
                 Followed(fmu, description, signals, table)

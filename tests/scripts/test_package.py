@@ -3,6 +3,7 @@
 import html
 import re
 import subprocess
+import zipfile
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -297,6 +298,29 @@ def test_a_sweep_writes_while_a_thread_loads(tmp_path):
     folder = package.assemble(tmp_path / "package")
     script = SLOW_LOADING.replace("FMU", repr(str(fmu.archive("SimplePendulumLinear"))))
     assert succeed(package.python(folder, "-c", script, cwd=tmp_path)).endswith("\nTrue True\n")
+
+
+BROKEN = """
+import os, lagrange_fmu
+before = os.getcwd()
+calls = [lambda: lagrange_fmu.simulate(FMU, stop_time=1), lambda: lagrange_fmu.simulate(FMU, stop_time=1, fmi_type="ModelExchange"),
+         lambda: lagrange_fmu.start(FMU), lambda: lagrange_fmu.linearize(FMU)]
+for call in calls:
+    try:
+        call()
+    except Exception as problem:
+        print("load" in str(problem) or repr(problem), os.getcwd() == before)
+"""
+
+
+def test_an_fmu_that_cannot_be_loaded(tmp_path):
+    """FMPy would leave the process in the folder of the library."""
+    folder, broken = package.assemble(tmp_path / "package"), tmp_path / "Broken.fmu"
+    with zipfile.ZipFile(fmu.archive("SimplePendulum")) as archive, zipfile.ZipFile(broken, "w") as copy:
+        for name in archive.namelist():
+            copy.writestr(name, b"no library" if name.endswith(".so") else archive.read(name))
+    printed = succeed(package.python(folder, "-c", BROKEN.replace("FMU", repr(str(broken))), cwd=tmp_path))
+    assert printed == "True True\n" * 4
 
 
 INTERRUPTED = """

@@ -23,8 +23,24 @@ from fmpy.fmi2 import (
 
 PROBLEMS = ("logStatusWarning", "logStatusDiscard", "logStatusError", "logStatusFatal")  # log categories of warnings and errors
 VARIED = {"Real": float, "Integer": np.intc, "Boolean": np.intc}  # types of variables that a sweep varies, and of their values in C
-opened = {}  # Instance by (thread, hash of the FMU's archive)
-loading = threading.Lock()  # held while FMPy loads a library, since it changes the working directory of the process for that time
+
+
+class Opened(dict):
+    """
+    Instances by thread and hash of the FMU's archive. The copy that another process gets is empty.
+
+    `loading` is held while FMPy loads a library, since it changes the working directory of the process for that time.
+    """
+
+    def __init__(self):
+        super().__init__()
+        self.loading = threading.Lock()
+
+    def __reduce__(self):
+        return Opened, ()
+
+
+opened = Opened()
 
 
 class Instance:
@@ -37,7 +53,7 @@ class Instance:
         (folder / "runner").write_bytes(runner)
         unzipped = extract(str(folder / "system.fmu"), self.folder.name)
         self.description, self.messages = read_model_description(unzipped), []
-        with loading:
+        with opened.loading:
             self.slave = FMU2Slave(guid=self.description.guid, unzipDirectory=unzipped, instanceName="sweep",
                                    modelIdentifier=self.description.coSimulation.modelIdentifier)  # fmt: skip
         self.callbacks = fmi2CallbackFunctions()

@@ -7,6 +7,7 @@ import numpy as np
 from fmpy import extract
 from fmpy.fmi1 import FMICallException
 
+from .loading import loading
 from .models import Model2, Model3, Slave2, Slave3
 from .problem import Problem
 from .running import fmu_of, is_fmu
@@ -150,7 +151,8 @@ def _opened(fmu, description, in_series, messages):
     folder = extract(str(fmu))
     kind = {("2.0", False): Model2, ("2.0", True): Slave2, ("3.0", False): Model3, ("3.0", True): Slave3}[description.fmiVersion, in_series]
     try:
-        model = kind(guid=description.guid, unzipDirectory=folder, instanceName="model", modelIdentifier=description.modelExchange.modelIdentifier)
+        with loading():
+            model = kind(guid=description.guid, unzipDirectory=folder, instanceName="model", modelIdentifier=description.modelExchange.modelIdentifier)
         model.begin(messages)
         try:
             yield model

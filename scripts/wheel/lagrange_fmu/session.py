@@ -12,6 +12,7 @@ from fmpy.fmi2 import FMU2Slave, calloc, fmi2CallbackAllocateMemoryTYPE, fmi2Cal
 from fmpy.simulation import instantiate_fmu
 
 from .co_simulation import Slave2, Slave3, check_platform
+from .loading import loading
 from .named_values import NamedValues, numbers_for
 from .problem import Problem
 from .quantities import number_of
@@ -73,7 +74,8 @@ class Simulation(NamedValues):
         has_events = self._is_third and description.coSimulation.hasEventMode
         try:
             with self._named("cannot start"):
-                self.fmu = _instantiate(folder, description, log_into(self._problems), has_events)
+                with loading():
+                    self.fmu = _instantiate(folder, description, log_into(self._problems), has_events)
                 instances.append(self.fmu)
                 self._slave = (Slave3 if self._is_third else Slave2)(self.fmu, description, None)
                 self._initialize(self._start)
