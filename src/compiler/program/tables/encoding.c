@@ -116,7 +116,7 @@ static void append_runs(struct WordList *words, const struct Encoding *encoding,
     const struct Instruction *instruction = &ir->instructions[schedule[first]];
     end = first + 1;
     while (end < ir->count && same_run(instruction, &ir->instructions[schedule[end]])) end++;
-    if (instruction->opcode == SKIP)
+    if (instruction->opcode == SKIP && function->regions != NULL) /* a region contains no others */
       append_region(words, encoding, instruction, &function->regions[instruction->result]);
     else append_run(words, encoding, ir, schedule, first, end);
   }
