@@ -158,4 +158,4 @@ def test_fmus_with_series_link_nothing():
     for name in SYSTEMS:
         data = fmu.library(name).read_bytes()
         # Two thirds of an archive are its sources, whose comments count; with tables it holds the interpreter as well.
-        assert b"SUNDIALS" not in data and archive(name).stat().st_size < 200_000
+        assert b"SUNDIALS" not in data and archive(name).stat().st_size < 201_000
