@@ -11,7 +11,7 @@ from .problem import Problem
 
 HERE = Path(__file__).resolve().parent
 NAME = "lagc.exe" if os.name == "nt" else "lagc"
-PLACES = (HERE / "bin" / NAME, HERE.parent / "build" / "bin" / NAME)  # in the wheel, and in a clone
+PLACES = (HERE / "bin" / NAME, HERE.parents[1] / "build" / "bin" / NAME)  # in the wheel, and in a clone
 
 
 @functools.cache
