@@ -36,7 +36,7 @@ def test_peers():
 
 def test_a_peer_in_python(tmp_path):
     """PythonFMU, which scripts/test installs, runs in its own process, since an error in its library would end this one."""
-    code = "import sys, realtime; print([realtime.python_pendulum(folder, 300)['steps'] for folder in sys.argv[1:]])"
+    code = "import sys; from scripts.bench import realtime; print([realtime.python_pendulum(folder, 300)['steps'] for folder in sys.argv[1:]])"
     folders = [tmp_path / name for name in ("first", "second", "third")]
     for folder in folders:
         folder.mkdir()
