@@ -129,10 +129,7 @@ static Node whole_force(const struct Model *model, size_t constraint, Node force
   for (size_t i = 0; i < model->switches.friction_count; i++)
     if (model->switches.frictions[i].constraint == constraint)
       return friction_force(model->graph, &model->switches.frictions[i], force);
-  for (size_t i = 0; i < model->switches.contact_count; i++)
-    if (model->switches.contacts[i].constraint == constraint)
-      return add(model->graph, force, model->switches.contacts[i].carried);
-  return force;
+  return add(model->graph, force, carried_force(model, constraint));
 }
 
 /* Appends the constraint forces. Force times constraint is an energy, or a power for constraints of velocities. */

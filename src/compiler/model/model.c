@@ -78,12 +78,14 @@ Node unknown_of_row(const struct Model *model, size_t row) {
   return row < n ? model->unknowns.accelerations[row] : model->unknowns.forces[row - n];
 }
 
-Node whole_constraint_force(const struct Model *model, size_t constraint) {
-  Node force = model->unknowns.forces[constraint];
+Node carried_force(const struct Model *model, size_t constraint) {
   for (size_t i = 0; i < model->switches.contact_count; i++)
-    if (model->switches.contacts[i].constraint == constraint)
-      return add(model->graph, force, model->switches.contacts[i].carried);
-  return force;
+    if (model->switches.contacts[i].constraint == constraint) return model->switches.contacts[i].carried;
+  return ZERO;
+}
+
+Node whole_constraint_force(const struct Model *model, size_t constraint) {
+  return add(model->graph, model->unknowns.forces[constraint], carried_force(model, constraint));
 }
 
 char *constraint_force_name(const struct Variable *constraint) {

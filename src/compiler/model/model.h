@@ -296,6 +296,9 @@ bool has_fixed_coordinates(const struct Model *model);
 /* Returns the unknown of a row of the system K x = b of inertia.h: an acceleration, or a constraint force. */
 Node unknown_of_row(const struct Model *model, size_t row);
 
+/* Returns the force that a contact carries beside the constraint; ZERO for other constraints. */
+Node carried_force(const struct Model *model, size_t constraint);
+
 /* Returns the force of a constraint; of a contact, with the part that it carries beside the constraint. */
 Node whole_constraint_force(const struct Model *model, size_t constraint);
 

@@ -124,10 +124,7 @@ static void set_contacts(struct PlaneForces *forces, double none) {
 static void let_carry(struct PlaneForces *forces, size_t row, struct PlaneState *state) {
   const struct ContactImpulses *impulses = &forces->impulses;
   const double load[] = {-forces->force[row], -forces->force[row + 1]};
-  size_t contacts = impulses->contact_count;
-  state->sliding = 0.0;
-  for (size_t i = 0; i < contacts; i++)
-    state->sliding += impulses->coefficient[(row - contacts) * contacts + i] * forces->force[i];
+  state->sliding = cones_limit(&(struct Cones){.impulses = impulses, .impulse = forces->force}, row);
   plane_carry(forces->resolution, state, load);
 }
 

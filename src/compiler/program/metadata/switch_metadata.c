@@ -29,9 +29,9 @@ static const struct ContactMetadata *contacts_of(const struct Program *program) 
   struct ContactMetadata *metadata = allocate(switches->contact_count, sizeof *metadata);
   for (size_t i = 0; i < switches->contact_count; i++) {
     const struct Contact *contact = &switches->contacts[i];
+    bool has_carried = contact->carried != ZERO;
     metadata[i] = (struct ContactMetadata){mode_index(program, contact->mode), contact->constraint,
-                                           contact->carried != ZERO ? mode_index(program, contact->carried)
-                                                                    : mode_index(program, contact->mode),
+                                           mode_index(program, has_carried ? contact->carried : contact->mode),
                                            name_of(program, contact->constraint)};
   }
   return metadata;
