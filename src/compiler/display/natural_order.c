@@ -21,7 +21,7 @@ struct Piece {
 struct Pieces {
   const struct Atoms *atoms;
   const char *const *texts;
-  struct Piece items[TERM_ROOM];
+  struct Piece *items;
   size_t count;
 };
 
@@ -163,9 +163,10 @@ static struct Piece collected_parameters(const struct Atoms *atoms, struct Term 
 static bool differ_in_parameters(const struct Atoms *atoms, const struct Term *a, const struct Term *b) {
   bool has_others = false;
   for (int k = 0; k < atoms->count; k++) {
-    if (is_of_parameters(atoms, k)) continue;
-    if (a->exponents[k] != b->exponents[k]) return false;
-    has_others |= a->exponents[k] != 0.0;
+    bool is_equal = a->exponents[k] == b->exponents[k];
+    if ((is_equal && a->exponents[k] == 0.0) || is_of_parameters(atoms, k)) continue;
+    if (!is_equal) return false;
+    has_others = true;
   }
   return has_others;
 }
@@ -174,9 +175,9 @@ static bool differ_in_parameters(const struct Atoms *atoms, const struct Term *a
 static void collect_parameters(struct Pieces *pieces, const struct Terms *terms) {
   const struct Atoms *atoms = pieces->atoms;
   bool done[TERM_ROOM] = {false};
+  struct Term *alike = allocate(terms->count, sizeof *alike);
   for (size_t i = 0; i < terms->count; i++) {
     if (done[i]) continue;
-    struct Term *alike = allocate(terms->count, sizeof *alike);
     size_t count = 0;
     for (size_t j = i; j < terms->count; j++) {
       if (done[j] || (j > i && !differ_in_parameters(atoms, &terms->items[i], &terms->items[j]))) continue;
@@ -184,8 +185,8 @@ static void collect_parameters(struct Pieces *pieces, const struct Terms *terms)
       alike[count++] = terms->items[j];
     }
     pieces->items[pieces->count++] = collected_parameters(atoms, alike, count, pieces->texts);
-    release(alike);
   }
+  release(alike);
 }
 
 /* Returns the index of the only acceleration of a term, to the first power; -1 for other terms. */
@@ -212,11 +213,9 @@ static struct Terms coefficients_of(const struct Atoms *atoms, const struct Term
   return found;
 }
 
-static struct Pieces *create_pieces(const struct Atoms *atoms, const char *const *texts) {
-  struct Pieces *pieces = allocate(1, sizeof *pieces);
-  pieces->atoms = atoms;
-  pieces->texts = texts;
-  return pieces;
+/* Returns room for this number of pieces; sum_with_terms() releases it. */
+static struct Pieces create_pieces(const struct Atoms *atoms, const char *const *texts, size_t room) {
+  return (struct Pieces){.atoms = atoms, .texts = texts, .items = allocate(room, sizeof(struct Piece))};
 }
 
 /* Returns the sum of the pieces and of further terms, which are collected by parameters; releases the pieces. */
@@ -224,7 +223,7 @@ static char *sum_with_terms(struct Pieces *pieces, const struct Terms *terms) {
   collect_parameters(pieces, terms);
   sort_pieces(pieces->atoms, pieces->items, pieces->count);
   char *text = joined_text(pieces->items, pieces->count);
-  release(pieces);
+  release(pieces->items);
   return text;
 }
 
@@ -239,7 +238,8 @@ static struct Piece collected_acceleration(const struct Atoms *atoms, struct Ter
   common.exponents[acceleration] = 1.0;
   double number = common_number(coefficients->items, coefficients->count);
   for (size_t i = 0; i < coefficients->count; i++) coefficients->items[i].coefficient /= number;
-  char *text = sum_with_terms(create_pieces(atoms, texts), coefficients);
+  struct Pieces pieces = create_pieces(atoms, texts, coefficients->count);
+  char *text = sum_with_terms(&pieces, coefficients);
   whole.text = product_text(atoms, number, &common, texts, text);
   whole.term.exponents[acceleration] = 1.0;
   whole.is_negative = is_negative;
@@ -247,7 +247,7 @@ static struct Piece collected_acceleration(const struct Atoms *atoms, struct Ter
 }
 
 char *sum_in_natural_order(const struct Atoms *atoms, const struct Terms *terms, const char *const *texts) {
-  struct Pieces *pieces = create_pieces(atoms, texts);
+  struct Pieces pieces = create_pieces(atoms, texts, terms->count);
   bool done[TERM_ROOM] = {false};
   struct Terms rest = {allocate(terms->count, sizeof *rest.items), 0};
   for (size_t i = 0; i < terms->count; i++) {
@@ -259,11 +259,11 @@ char *sum_in_natural_order(const struct Atoms *atoms, const struct Terms *terms,
     }
     struct Terms coefficients = coefficients_of(atoms, terms, acceleration, done);
     if (coefficients.count > 1)
-      pieces->items[pieces->count++] = collected_acceleration(atoms, &coefficients, acceleration, texts);
+      pieces.items[pieces.count++] = collected_acceleration(atoms, &coefficients, acceleration, texts);
     else rest.items[rest.count++] = terms->items[i];
     release(coefficients.items);
   }
-  char *text = sum_with_terms(pieces, &rest);
+  char *text = sum_with_terms(&pieces, &rest);
   release(rest.items);
   return text;
 }
