@@ -155,7 +155,7 @@ def test_source_tree_stays_clean():
         pytest.skip("not a clone")
     status = subprocess.run(["git", "status", "--porcelain", "--ignored"], cwd=ROOT, capture_output=True, text=True)
     ignored = {line[3:] for line in status.stdout.splitlines() if line.startswith("!!")}
-    allowed = re.compile(r"^(build/|\.pytest_cache/|\.hypothesis/|(tests|scripts(/\w+)*)/__pycache__/)$")
+    allowed = re.compile(r"^(build/|\.pytest_cache/|\.hypothesis/|(tests|scripts)(/\w+)*/__pycache__/)$")
     assert all(allowed.match(path) for path in ignored), ignored
 
 
