@@ -172,7 +172,8 @@ struct FrictionMetadata {
   size_t reported;   /* the reported mode: also 0 while other constraints keep the velocity at 0 */
   size_t constraint; /* active while it sticks */
   const char *name;
-  bool is_given; /* its velocity is prescribed: it never sticks, and its mode is that of a branch */
+  bool is_given;         /* its velocity is prescribed: it never sticks, and its mode is that of a branch */
+  bool has_static_limit; /* its force is the stiction while it is reported as 0, and its mode is not */
 };
 
 /*

@@ -59,14 +59,20 @@ static Node direction_in_plane(struct Graph *graph, const struct Friction *frict
   return divide(graph, component, power_number(graph, square, 0.5));
 }
 
-/* Returns the sliding force of a friction along a velocity, by the direction of sliding. */
-static Node sliding_by_direction(struct Graph *graph, const struct Friction *friction) {
-  if (friction->sliding == friction->sliding_back) return friction->sliding;
-  return choose_node(graph, friction->mode, friction->sliding, friction->sliding_back);
+static Node by_direction(struct Graph *graph, const struct Friction *friction, Node forth, Node back) {
+  return forth == back ? forth : choose_node(graph, friction->mode, forth, back);
+}
+
+/* Returns the size of the force of a friction along a velocity while it slides, or acts with its limit at rest. */
+static Node size_along_line(struct Graph *graph, const struct Friction *friction) {
+  Node sliding = by_direction(graph, friction, friction->sliding, friction->sliding_back);
+  if (!friction->has_static_limit) return sliding;
+  Node limit = by_direction(graph, friction, friction->stiction, friction->stiction_back);
+  return choose_node(graph, power_number(graph, friction->reported, 2.0), sliding, limit);
 }
 
 Node sliding_force(struct Graph *graph, const struct Friction *friction) {
-  if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, sliding_by_direction(graph, friction));
+  if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, size_along_line(graph, friction));
   return multiply(graph, friction->sliding, direction_in_plane(graph, friction));
 }
 

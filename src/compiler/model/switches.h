@@ -46,15 +46,16 @@ struct FrictionPlane {
 /*
  * Dry friction along a velocity. Its mode is the sign of the velocity while it slides, and 0 while it sticks. Then
  * a constraint keeps the velocity at 0 with a force of at most stiction. `reported` is the mode that outputs show.
- * It is also 0 while other constraints keep the velocity at 0, when the friction may act with its sliding force at
- * rest. Against a negative velocity the sliding force is sliding_back, and the largest static one stiction_back. A
- * friction with a prescribed velocity never sticks and has no force at rest. Its mode is that of a branch on the
- * velocity's sign, or in a plane its own.
+ * It is also 0 while other constraints keep the velocity at 0, when the friction may act with its limit at rest. That
+ * is the stiction if has_static_limit, else the sliding force. Against a negative velocity the sliding force is
+ * sliding_back, and the largest static one stiction_back. A friction with a prescribed velocity never sticks and has no
+ * force at rest. Its mode is that of a branch on the velocity's sign, or in a plane its own.
  */
 struct Friction {
   size_t constraint; /* index among the model's constraints */
   Node mode, reported, velocity, sliding, stiction, sliding_back, stiction_back;
   bool is_given;
+  bool has_static_limit; /* the stiction differs, and other frictions or constraints may keep the velocity at 0 */
   struct FrictionPlane plane;
 };
 

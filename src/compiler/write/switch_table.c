@@ -54,7 +54,7 @@ static void write_frictions(FILE *file, const struct SwitchTable *metadata) {
     const struct FrictionMetadata *friction = &metadata->frictions[i];
     fprintf(file, "{%zu, %zu, %zu, ", friction->mode, friction->reported, friction->constraint);
     write_c_string(file, friction->name);
-    fprintf(file, ", %s}, ", name_of(friction->is_given));
+    fprintf(file, ", %s, %s}, ", name_of(friction->is_given), name_of(friction->has_static_limit));
   }
   fputs("};\n\n", file);
 }

@@ -42,11 +42,12 @@ struct FrictionState {
   double stiction;  /* in this direction */
   double error_bound, error_bound_of_rate, error_bound_of_force; /* rounding error bounds */
   double largest_rate;                                           /* since the start of the event */
-  bool is_hit;       /* the zero of its velocity was located, or its limit was reached */
-  bool is_first;     /* it has not switched in this event resolution */
-  bool may_jump;     /* its velocity may have jumped, or the simulation starts */
-  bool is_moving;    /* faster than rounding errors */
-  bool has_no_force; /* as with mu = 0: rounding would decide on sticking */
+  bool is_hit;        /* the zero of its velocity was located, or its limit was reached */
+  bool is_first;      /* it has not switched in this event resolution */
+  bool may_jump;      /* its velocity may have jumped, or the simulation starts */
+  bool is_near_limit; /* the force is, as located; others may have taken a share of it since */
+  bool is_moving;     /* faster than rounding errors */
+  bool has_no_force;  /* as with mu = 0: rounding would decide on sticking */
 };
 
 static void take_direction(const struct Resolution *resolution, size_t friction, struct FrictionState *state) {
@@ -87,6 +88,8 @@ static struct FrictionState friction_state(const struct Resolution *resolution, 
                                     resolution->jumped || resolution->occasion == AT_START ||
                                     (may_change_gaps(resolution) && is_off_zero(resolution, value[FRICTION_VELOCITY]))};
   take_direction(resolution, friction, &state);
+  state.is_near_limit = !resolution->has_stuck_again || !metadata->has_static_limit ||
+                        state.force > (1.0 - sticking_rate_share) * state.stiction;
   /* A friction force that varies passes through 0 and is nonzero the next moment. */
   bool may_stay = resolution->switches->rests_on != NULL || !resolution->switches->friction_varies;
   state.has_no_force = may_stay && value[FRICTION_STICTION] == 0.0 && value[FRICTION_FORCE] == 0.0 &&
@@ -129,7 +132,8 @@ static double mode_from_rest(const struct Resolution *resolution, const struct F
   if (passing != 0.0) return passing;
   /* At the limit a friction sticks; an importer stops beyond it. After coming to rest there rounding may exceed it. */
   double limit = state->stiction + (state->is_hit && !state->is_first ? state->error_bound_of_force : 0.0);
-  bool slips = state->force > limit || (state->is_hit && state->is_first && !resolution->jumped);
+  bool has_reached = state->is_hit && state->is_first && state->is_near_limit && !resolution->jumped;
+  bool slips = state->force > limit || has_reached;
   return slips ? state->direction : 0.0;
 }
 
@@ -190,6 +194,34 @@ void frictions_report_missing(const struct Resolution *resolution, const char *m
               resolution->time, missing, switches->frictions[worst].name);
 }
 
+/* Sets the mode. A friction that leaves rest acts with its stiction as long as others keep its velocity at 0. */
+static void switch_friction(struct Resolution *resolution, size_t friction, double mode) {
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  bool is_constrained = false;
+  resolution_set_mode(resolution, metadata->mode, mode);
+  if (!metadata->has_static_limit || mode == 0.0) return;
+  if (!frictions_find_constrained(resolution, friction, &is_constrained)) return; /* the next evaluation says why */
+  resolution_set_observing_mode(resolution, metadata->reported, is_constrained ? 0.0 : mode);
+}
+
+/*
+ * Lets all frictions stick that act with their limits at rest, once in an event resolution. The forces of the others
+ * follow from theirs, and may exceed their limits, though other forces within all limits hold the same load.
+ */
+static bool stick_again(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool changed = false;
+  for (size_t i = 0; i < switches->friction_count && !resolution->has_stuck_again; i++) {
+    if (!switches->frictions[i].has_static_limit) continue;
+    struct FrictionState state = friction_state(resolution, i);
+    if (state.mode == 0.0 || state.is_moving) continue;
+    resolution_set_mode(resolution, switches->frictions[i].mode, 0.0);
+    changed = true;
+  }
+  resolution->has_stuck_again = true;
+  return changed;
+}
+
 const char *frictions_act(struct Resolution *resolution, bool *switched) {
   const struct SwitchTable *switches = resolution->switches;
   *switched = false;
@@ -206,7 +238,9 @@ const char *frictions_act(struct Resolution *resolution, bool *switched) {
              : resolution->has_several_motions ? neither
                                                : frictions_report_inconsistent(resolution, i);
     }
-    resolution_set_mode(resolution, switches->frictions[i].mode, mode);
+    *switched = state.mode == 0.0 && stick_again(resolution);
+    if (*switched) return NULL;
+    switch_friction(resolution, i, mode);
     resolution->last.friction = i;
     resolution->last.mode = state.mode;
     resolution->last.certainty = certainty;
@@ -277,7 +311,8 @@ bool frictions_report(struct Resolution *resolution, bool *again) {
         is_planar ? speed_in_plane(resolution, i) : resolution->value[friction_slot(switches, i, FRICTION_VELOCITY)];
     bool is_constrained = false,
          may_rest = mode != 0.0 && !metadata->is_given && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
-    if (!is_planar) may_rest &= !leaves_rest(resolution, i);
+    bool is_at_limit = metadata->has_static_limit && mode_of(resolution, metadata->reported) == 0.0;
+    if (!is_planar && !is_at_limit) may_rest &= !leaves_rest(resolution, i);
     if (may_rest && !frictions_find_constrained(resolution, i, &is_constrained)) return false;
     if (is_planar) i++; /* the friction across has the same mode */
     if (is_constrained) mode = 0.0;

@@ -48,6 +48,7 @@ struct Resolution {
   bool has_started;                       /* contacts and frictions have their modes of the start, for AT_START */
   bool has_shared;                        /* contacts at rest share the load */
   bool has_several_motions;               /* several motions of the frictions were logged */
+  bool has_stuck_again;                   /* frictions at their limits at rest have stuck again */
   bool has_searched_jam;                  /* all modes of frictions at rest were tried */
   bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
   int impacts, lifts;

@@ -140,6 +140,13 @@ static void add_sliding_force(struct Reader *reader, const struct Friction *fric
   add_virtual_work(reader->model, reaction, &gradient);
 }
 
+/* True if the friction may be at its stiction while others keep its velocity at 0. Contacts share their loads. */
+static bool has_static_limit(const struct Model *model, const struct Friction *friction) {
+  bool differs = friction->stiction != friction->sliding || friction->stiction_back != friction->sliding_back;
+  return differs && friction->plane.axis == NO_PLANE && model->constraints.count > 1 &&
+         !follows_contact(model, friction->sliding) && !follows_contact(model, friction->stiction);
+}
+
 void complete_friction(struct Reader *reader, struct Friction *friction, struct Dimension unit) {
   size_t parts = friction->plane.axis == NO_PLANE ? 1 : 2;
   for (size_t i = 0; i < parts; i++) {
@@ -149,6 +156,7 @@ void complete_friction(struct Reader *reader, struct Friction *friction, struct 
     friction[i].stiction_back = friction->stiction_back;
     hold_velocity(reader, &friction[i], unit);
   }
+  friction->has_static_limit = has_static_limit(reader->model, friction);
   if (parts == 1 && reader->diagnostics->errors == 0) add_sliding_force(reader, friction);
 }
 
