@@ -339,6 +339,27 @@ static void let_planes_rest(struct PlaneRests *rests, bool carries) {
 }
 
 /*
+ * Lets frictions that do not slip stick with the forces that were found, and contacts carry those that balance them. The
+ * constraints of all then begin with 0, and do not redistribute what was found. False if accelerations do not exist.
+ */
+static bool let_all_carry(struct PlaneRests *rests) {
+  struct Resolution *resolution = rests->resolution;
+  let_planes_rest(rests, true);
+  for (size_t row = 0; row < rests->n; row += 2) {
+    struct PlaneState state = state_of_row(rests, row);
+    if (!slips(rests, row)) plane_release(resolution, &state);
+  }
+  if (!plane_evaluate(resolution)) return false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (contact_is_closed(resolution, i)) contact_carry(resolution, i, contact_force(resolution, i));
+  for (size_t row = 0; row < rests->n; row += 2) {
+    struct PlaneState state = state_of_row(rests, row);
+    if (!slips(rests, row)) plane_hold(resolution, &state);
+  }
+  return true;
+}
+
+/*
  * Weak frictions are those whose contacts are about to open. They keep their forces without constraints if others
  * constrain their velocities. Their constraints would take too much of a changing load again and again. False if that
  * cannot be determined.
@@ -364,8 +385,7 @@ static bool take_rests(struct PlaneRests *rests) {
   let_planes_rest(rests, false);
   if (!plane_evaluate(rests->resolution)) return false;
   if (all_stick(rests->resolution)) return true;
-  let_planes_rest(rests, true);
-  return release_weak(rests);
+  return let_all_carry(rests) && release_weak(rests);
 }
 
 /* Lets frictions without kinetic friction slip if they need more than their stiction. */
