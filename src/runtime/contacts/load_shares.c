@@ -46,9 +46,11 @@ static bool find_idle(struct Resolution *resolution) {
   return has_closed && is_idle;
 }
 
+/* Closes the contacts that take part. The others no longer carry a force, of which these then have a share. */
 static void close_idle(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++) {
+    if (contact_is_closed(resolution, i)) set_contact(resolution, i, true);
     if (resolution->takes_part[i] == 0.0) continue;
     set_contact(resolution, i, true);
     for (size_t f = 0; f < switches->friction_count; f++)
