@@ -326,15 +326,11 @@ static void let_slip(struct PlaneRests *rests, size_t row) {
   else plane_slip(rests->resolution, &state, has_force ? against : &rests->behind[row]);
 }
 
-/* Lets frictions stick that do not slip, by their constraints alone or with the forces that were found. */
-static void let_planes_rest(struct PlaneRests *rests, bool carries) {
+/* Lets frictions that do not slip stick by their constraints alone. */
+static void let_planes_rest(struct PlaneRests *rests) {
   for (size_t row = 0; row < rests->n; row += 2) {
-    if (slips(rests, row)) continue;
     struct PlaneState state = state_of_row(rests, row);
-    const double load[] = {-rests->force[row], -rests->force[row + 1]};
-    state.sliding = limit_at(rests, row, rests->given_kinetic, rests->kinetic);
-    if (carries) plane_carry(rests->resolution, &state, load);
-    else plane_stick(rests->resolution, &state);
+    if (!slips(rests, row)) plane_stick(rests->resolution, &state);
   }
 }
 
@@ -344,10 +340,13 @@ static void let_planes_rest(struct PlaneRests *rests, bool carries) {
  */
 static bool let_all_carry(struct PlaneRests *rests) {
   struct Resolution *resolution = rests->resolution;
-  let_planes_rest(rests, true);
   for (size_t row = 0; row < rests->n; row += 2) {
+    if (slips(rests, row)) continue;
     struct PlaneState state = state_of_row(rests, row);
-    if (!slips(rests, row)) plane_release(resolution, &state);
+    const double load[] = {-rests->force[row], -rests->force[row + 1]};
+    state.sliding = limit_at(rests, row, rests->given_kinetic, rests->kinetic);
+    plane_carry(resolution, &state, load);
+    plane_release(resolution, &state);
   }
   if (!plane_evaluate(resolution)) return false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
@@ -382,7 +381,7 @@ static bool release_weak(struct PlaneRests *rests) {
 static bool take_rests(struct PlaneRests *rests) {
   for (size_t row = 0; row < rests->n; row += 2)
     if (slips(rests, row)) let_slip(rests, row);
-  let_planes_rest(rests, false);
+  let_planes_rest(rests);
   if (!plane_evaluate(rests->resolution)) return false;
   if (all_stick(rests->resolution)) return true;
   return let_all_carry(rests) && release_weak(rests);
