@@ -144,7 +144,7 @@ def test_lift_off_without_speed(method, tolerance, speed):
 def test_a_solver_recommends_others_only():
     """At errors of 1e-4, bdf cannot resolve lift-off from the dome if a step ends just behind it; the message recommends taylor only."""
     instance = Instance("Dome_bdf").initialize({"vx": 3.0}, tolerance=1e-4)
-    with instance.fails(DISCARD, "a contact opens and closes without end \(Zeno behaviour\)$"):
+    with instance.fails(DISCARD, r"a contact opens and closes without end \(Zeno behaviour\)$"):
         for _ in range(20):
             instance.step(0.01)
     [text] = [text for _, _, text in instance.messages if "contact 'dome'" in text]
