@@ -24,7 +24,7 @@ def generated_names():
     """Return the names at file scope in system.c: static objects and arrays that lagc writes, and functions."""
     folder = ROOT / "src" / "compiler" / "write"
     texts = "".join(path.read_text() for path in folder.glob("*.c"))
-    found = re.findall(r'"static [^"=(%]*?\b(\w+)(?:\[|\(| = )', texts) + re.findall(r'write_(?:sizes\(file, "\w+"|whole_numbers\(file|truths\(file), "(\w+)"', texts)
+    found = re.findall(r'"static [^"=(%]*?\b(\w+)(?:\[|\(| = )', texts) + re.findall(r'(?:write_array\(file, |ARRAY_FIELD\([^"]*)"(\w+)"', texts)
     found += re.findall(r'"([a-z]+(?:_[a-z]+)*)"', (ROOT / "src" / "compiler" / "program" / "generated_functions.c").read_text())
     return sorted(set(found) - {"double", "int", "void"})
 

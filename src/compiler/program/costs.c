@@ -87,6 +87,6 @@ struct StepWork step_work_of(const struct Program *program) {
   if (program->ir_functions[FUNCTION_INDICATORS] != NULL)
     step += SEARCHES * (LOOK + operations_of(program->ir_functions[FUNCTION_INDICATORS]) +
                         2.0 * ORDER * (double)program->interface->state_count);
-  return (struct StepWork){evaluation, step,
-                           EVENT + 4.0 * evaluation + operations_of(program->ir_functions[FUNCTION_SWITCHING_VALUES])};
+  double event = EVENT + 4.0 * evaluation + operations_of(program->ir_functions[FUNCTION_SWITCHING_VALUES]);
+  return (struct StepWork){rint(evaluation), rint(step), rint(event)};
 }

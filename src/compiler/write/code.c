@@ -114,13 +114,6 @@ static void write_includes(FILE *file, const struct Program *program) {
   fputs("\n", file);
 }
 
-static void write_numbers(FILE *file, const char *name, const struct InertiaBlock *block, size_t coordinates) {
-  struct BlockNumbers numbers = block_numbers_of(block, coordinates);
-  fprintf(file, "static const int %s[] = {", name);
-  for (size_t i = 0; i < numbers.count; i++) fprintf(file, "%d, ", numbers.items[i]);
-  fputs("};\n\n", file);
-}
-
 /*
  * Subtracts from element (row, j) of K the products K(row, c) L(j, c) over the columns c < j that both rows have; j is
  * the column of the element at slot.
@@ -207,7 +200,8 @@ static void write_blocks(FILE *file, const struct Program *program) {
       write_sizes(file, "size_t", format_text("start%zu", i), block->start, block->count + 1);
       write_sizes(file, "size_t", format_text("column%zu", i), block->column, block->start[block->count]);
     }
-    write_numbers(file, format_text("coordinate%zu", i), block, program->equations->count);
+    struct BlockNumbers numbers = block_numbers_of(block, program->equations->count);
+    write_array(file, format_text("coordinate%zu", i), &int_elements, numbers.items, numbers.count);
     if (!program_solves_by_statements(program, i)) continue;
     write_small_factor(file, block, program->equations->count, i);
     write_small_solve(file, block, i);

@@ -5,8 +5,11 @@
 
 #include "program/program.h"
 
+/* The names of enum VariableKind. */
+extern const char *const variable_kind_names[];
+
 /* Writes initializers of the function pointers in these groups. */
-void write_fields(FILE *file, const struct Program *program, enum FunctionGroup first, enum FunctionGroup last);
+void write_functions_of(FILE *file, const struct Program *program, enum FunctionGroup first, enum FunctionGroup last);
 
 /* Writes the tables and struct Lagrangian. work_count: length of Point.work that the functions need. */
 void description_write(FILE *file, const struct Program *program, size_t work_count);
