@@ -121,7 +121,7 @@ function(add_archive name version folder system platforms)
   add_dependencies(${target} derive_${name}) # otherwise each FMU would derive the system
 endfunction()
 
-# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form] [ARRAYS])
+# lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form] [ARRAYS] [ROBOT word=value...])
 # builds fmu/NAME.fmu for FMI 2, and fmi3/NAME.fmu for FMI 3, in the current binary folder. NAME must be the name in SYSTEM.xml; pack.cmake
 # checks this.
 #   PLATFORMS     linux64 (glibc 2.17 or newer), win64, darwin64 (both processors), aarch64-linux, and for FMI 3 wasm32, compiled by zig;
@@ -130,11 +130,12 @@ endfunction()
 #   SOLVER        a method of <solver> in place of the own one of a system with coordinates or states
 #   FORM          statements or tables; default: chosen by the system's size
 #   ARRAYS        variables that <for> repeats are arrays in FMI 3.0, not scalars
+#   ROBOT         options for the file of a robot, such as base=floating
 # The targets are fmu_NAME, fmu_3_NAME and, for this machine's library, system_NAME; the prefixes avoid clashes with other targets.
 function(lagrange_add_fmu name system)
-  cmake_parse_arguments(PARSE_ARGV 2 fmu "ARRAYS" "SOLVER;FORM" "PLATFORMS;FMI_VERSIONS")
+  cmake_parse_arguments(PARSE_ARGV 2 fmu "ARRAYS" "SOLVER;FORM" "PLATFORMS;FMI_VERSIONS;ROBOT")
   if(fmu_UNPARSED_ARGUMENTS)
-    message(FATAL_ERROR "lagrange_add_fmu(${name}): unknown words '${fmu_UNPARSED_ARGUMENTS}'; expected PLATFORMS, FMI_VERSIONS, SOLVER, FORM or ARRAYS")
+    message(FATAL_ERROR "lagrange_add_fmu(${name}): unknown words '${fmu_UNPARSED_ARGUMENTS}'; expected PLATFORMS, FMI_VERSIONS, SOLVER, FORM, ARRAYS or ROBOT")
   endif()
   if(NOT fmu_FMI_VERSIONS)
     set(fmu_FMI_VERSIONS 2)
@@ -162,9 +163,13 @@ function(lagrange_add_fmu name system)
   if(fmu_ARRAYS)
     set(arrays --arrays)
   endif()
+  set(robot)
+  foreach(word ${fmu_ROBOT})
+    list(APPEND robot --robot ${word})
+  endforeach()
   add_custom_command(OUTPUT ${folder}/system.c
                      BYPRODUCTS ${folder}/modelDescription.xml ${folder}/documentation/index.html ${folder}/model.png
-                     COMMAND lagrange-fmu::lagc ${system} -o ${folder} ${solver} ${form} ${arrays}
+                     COMMAND lagrange-fmu::lagc ${system} -o ${folder} ${solver} ${form} ${arrays} ${robot}
                      DEPENDS lagrange-fmu::lagc ${dependencies}
                      COMMENT "Deriving ${name}" VERBATIM)
   add_custom_target(derive_${name} DEPENDS ${folder}/system.c)

@@ -1,6 +1,6 @@
 # Builds the FMU of a system; sourced by scripts that take a system as an argument.
 # Input: $command, the name of the script; $here, the folder in which it was called; $needed, the argument for scripts/setup; and $system, a name
-# in fmu/, or the path of a folder with a system.xml, of such a file, or of the URDF of a robot.
+# in fmu/, or the path of a folder with a system.xml, of such a file, or of that of a robot; the array $robot may have options for it.
 # Output: $fmu, the FMU; $name, its name; $file, the system's file; $build, the build folder.
 if [ -f "fmu/$system/system.xml" ]; then
   source=$PWD/fmu/$system
@@ -22,11 +22,15 @@ if [ ! -f "$file" ]; then
   exit 1
 fi
 
+if [ -n "${robot[*]-}" ] && [ ! -f "$source" ]; then
+  echo "$command: $system is no file of a robot; expected one for ${robot[*]}" >&2
+  exit 1
+fi
 build=build
 if [ "${source%/*}" != "$PWD/fmu" ]; then build=build/own; fi
 scripts/setup $needed
 if grep -qE "method *= *[\"'](bdf|erk)[\"']" "$file"; then scripts/package/sundials; fi
 name=${source##*/}
-if [ $build = build ]; then scripts/build build; else scripts/build $build -DSYSTEMS="$source"; fi
+if [ $build = build ]; then scripts/build build; else scripts/build $build -DSYSTEMS="$source" -DROBOT="$(IFS=";" && echo "${robot[*]-}")"; fi
 if [ -f "$source" ]; then name=$(cat $build/system_names); fi
 fmu=$build/fmu/$name.fmu

@@ -1,5 +1,7 @@
 #include "laboratory.h"
 
+#include <string.h>
+
 #include <libxml/tree.h>
 
 #include "assembly.h"
@@ -13,6 +15,7 @@
 #include "page/documentation.h"
 #include "program/program.h"
 #include "read/reader.h"
+#include "robots/description/robot_options.h"
 
 static const char *description_text, *documentation_text;
 
@@ -47,9 +50,22 @@ static void make(const struct Program *program, const struct Summary *summary, s
                  missing);
 }
 
-int derive(const char *path, int pull) {
+/* Sets the options from texts such as "base=floating", one a line. Returns false after reporting a wrong one. */
+static bool parse_options(const char *lines, struct RobotOptions *options, struct Diagnostics *diagnostics) {
+  const char *words[ROBOT_WORDS];
+  size_t count = 0;
+  for (size_t length; *lines != '\0' && count < ROBOT_WORDS; lines += length + (lines[length] != '\0')) {
+    length = strcspn(lines, "\n");
+    words[count++] = format_text("%.*s", (int)length, lines);
+  }
+  return robot_options_parse(words, count, options, diagnostics);
+}
+
+int derive(const char *path, int pull, const char *robot) {
   struct Diagnostics diagnostics = {.file = path};
-  struct ReaderOptions options = {.pull = pull != 0};
+  struct RobotOptions robot_options;
+  if (!parse_options(robot, &robot_options, &diagnostics)) return 1;
+  struct ReaderOptions options = {.pull = pull != 0, .robot = *robot != '\0' ? &robot_options : NULL};
   struct Model *model = model_read(path, &options, &diagnostics);
   struct Equations *equations = model != NULL ? motion_of(model, &diagnostics) : NULL;
   if (diagnostics.errors > 0) return 1;

@@ -6,9 +6,10 @@
 
 /*
  * Derives the system of a file, once in a process. pull: adds inputs that pull bodies, as lagc --pull. Returns 0; on
- * errors, writes messages to stderr, and nothing can be instantiated.
+ * errors, writes messages to stderr, and nothing can be instantiated. robot: options for the file of a robot, such as
+ * base=floating, each in a line of its own; "" for none.
  */
-int derive(const char *path, int pull);
+int derive(const char *path, int pull, const char *robot);
 
 /* Return modelDescription.xml and documentation/index.html of the derived system, as lagc writes them. */
 const char *model_description(void);

@@ -54,8 +54,8 @@ class Laboratory:
         memory = self.exports["memory"].read(self.store, place, self.exports["memory"].data_len(self.store))
         return memory[: memory.index(0)].decode()
 
-    def derive(self, path, is_pulled=False):
-        return self.call("derive", self.place(f"/{path}".encode()), int(is_pulled)) == 0
+    def derive(self, path, is_pulled=False, robot=""):
+        return self.call("derive", self.place(f"/{path}".encode()), int(is_pulled), self.place(robot.encode())) == 0
 
     def description(self):
         return ElementTree.fromstring(self.text(self.call("model_description")))
@@ -128,6 +128,38 @@ def test_pulled(tmp_path):
         assert laboratory.derive("DoublePendulum/system.xml", is_pulled)
         names = {variable.get("name") for variable in laboratory.description().find("ModelVariables")}
         assert ("pull.of.upper" in names) == is_pulled
+
+
+BALL = """<robot name="ball"><link name="ball"><inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+<collision><geometry><sphere radius="0.1"/></geometry></collision></link></robot>"""
+
+
+def test_options_for_the_file_of_a_robot(tmp_path):
+    """A free ball falls by g t^2/2; wrong options give lagc's messages."""
+    (tmp_path / "ball.urdf").write_text(BALL)
+    laboratory = Laboratory(tmp_path, tmp_path / "errors")
+    assert laboratory.derive("ball.urdf", robot="base=floating\nground=false\nlimits=outputs"), (tmp_path / "errors").read_text()
+    references = {variable.get("name"): int(variable.get("valueReference")) for variable in laboratory.description().find("ModelVariables")}
+    np.testing.assert_allclose(laboratory.states_after(5, 0.1, [references["base_z"], references["base_z_velocity"]]), [-9.81 / 8, -9.81 / 2], rtol=1e-12)
+    for robot, message in (("", "no joint of the robot moves"), ("base=flying", "'base=flying' is not an option for robots; expected base=fixed or base=floating")):
+        assert not Laboratory(tmp_path, tmp_path / "wrong").derive("ball.urdf", robot=robot)
+        assert message in (tmp_path / "wrong").read_text()
+
+
+def test_a_robot_is_changed_in_the_page(browser, tmp_path):
+    """The ball falls by g t^2/2; a saved page keeps the options, without which nothing moves."""
+    module()
+    (tmp_path / "ball.urdf").write_text(BALL)
+    (tmp_path / "page.html").write_text(editor_of(tmp_path / "ball.urdf", LABORATORY, robot=["base=floating"]), encoding="utf-8")
+    with editor(browser, tmp_path / "page.html") as page:
+        assert run_in(page, 0.5)["base_z"] == pytest.approx(-9.81 / 8, rel=1e-8)
+        run_anew(page, BALL.replace('name="ball"', 'name="egg"'))
+        with page.expect_download() as download:
+            page.locator("#savePage").click()
+        download.value.save_as(tmp_path / "kept.html")
+    with editor(browser, tmp_path / "kept.html") as page:
+        assert page.locator("#source").input_value().count('"egg"') == 2
+        assert run_in(page, 0.5)["base_z"] == pytest.approx(-9.81 / 8, rel=1e-8)
 
 
 def test_files_that_others_refer_to(tmp_path):

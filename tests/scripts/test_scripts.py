@@ -179,6 +179,26 @@ def test_a_robot(ready, tmp_path):
     assert ready.calls()[-1] == "python scripts/commands/run.py build/own/fmu/arm_6.fmu elbow=1"
 
 
+@pytest.mark.parametrize("command", ["run", "live"])
+def test_options_for_a_robot(command, ready, tmp_path):
+    """They may stand anywhere, and reach lagc by CMake; pages get them for the variant whose bodies can be pulled."""
+    (tmp_path / "dog.urdf").write_text('<robot name="dog"/>')
+    (ready.folder / "build" / "own").mkdir()
+    (ready.folder / "build" / "own" / "system_names").write_text("dog\n")
+    (ready.folder / "build" / "venv" / "installed-live").write_text((ready.folder / "build" / "venv" / "installed-run").read_text())
+    given = ["--base", "floating", "dog.urdf", "--feet", "A,B", "elbow=1", "--limits=stops", "--friction", "sticks", "--keyframe", "home"]
+    status, text = ready.run(command, *given, cwd=tmp_path)
+    assert status == 0, text
+    words = ["base=floating", "ground=A B", "limits=stops", "friction=sticks", "keyframe=home"]
+    assert any(f"-DROBOT={';'.join(words)}" in call for call in ready.calls())
+    last = ready.calls()[-1]
+    assert " build/own/fmu/dog.fmu " in last and " elbow=1" in last
+    assert command == "run" or all(f"--robot={word}" in last for word in words)
+    assert ready.run(command, "dog.urdf", "--base", cwd=tmp_path)[1].endswith(f"scripts/{command}: --base needs a value; see scripts/{command} --help\n")
+    add(ready.folder / "fmu" / "Pendulum")
+    assert "Pendulum is no file of a robot; expected one for ground=true" in ready.run(command, "Pendulum", "--ground", cwd=tmp_path)[1]
+
+
 @pytest.mark.parametrize("word", ["Pendulum", "fmu/Pendulum", "fmu/Pendulum/system.xml"])
 def test_a_system_of_the_clone(word, ready):
     add(ready.folder / "fmu" / "Pendulum")

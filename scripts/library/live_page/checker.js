@@ -3,12 +3,12 @@
 
 let laboratory; // bytes of laboratory.wasm
 
-function answerTo({ files, file, number }) {
-  const system = new Laboratory(laboratory, files), start = performance.now(), isValid = system.derive(file, false);
+function answerTo({ files, file, robot, number }) {
+  const system = new Laboratory(laboratory, files), start = performance.now(), isValid = system.derive(file, false, robot);
   const milliseconds = performance.now() - start;
   if (!isValid) return { number, messages: system.messages };
   const description = system.textOf(system.wasm.model_description()), equations = system.textOf(system.wasm.documentation());
-  const pulled = new Laboratory(laboratory, files), isPullable = pulled.derive(file, true);
+  const pulled = new Laboratory(laboratory, files), isPullable = pulled.derive(file, true, robot);
   return { number, messages: system.messages, milliseconds, result: { modelDescription: description, equations, pulled: isPullable ? pulled.textOf(pulled.wasm.model_description()) : null } };
 }
 

@@ -8,7 +8,7 @@ const template = `<!doctype html>\n${document.documentElement.outerHTML}`; // th
 const $ = (id) => document.getElementById(id);
 const data = JSON.parse($("data").textContent);
 const bench = (window.bench = { run, runs: 0 }); // for tests and the browser's console
-let files = { ...data.files }, file = data.file, opened = data.file;
+let files = { ...data.files }, file = data.file, opened = data.file, robot = data.robot; // robot: options for the file of a robot
 let checker = null, number = 0, derived = null; // the worker, the number of the last request to it, and the last successful result
 let isRunRequested = true, startsPlaying = false, timer = null, timeout = null;
 
@@ -102,7 +102,7 @@ function check() {
   clearTimeout(timer);
   clearTimeout(timeout);
   showState("deriving …");
-  checker.postMessage({ files, file, number });
+  checker.postMessage({ files, file, robot, number });
   timeout = setTimeout(() => {
     showState(`not derived within ${TIMEOUT} s`, "wrong");
     startChecker();
@@ -113,7 +113,7 @@ function check() {
 function show() {
   isRunRequested = false;
   const { modelDescription, equations, pulled } = derived;
-  const inner = { ...data.common, startsPlaying, modelDescription: { text: modelDescription }, equations: { text: equations }, pulled: pulled && { text: pulled }, system: files[file], laboratory: { files, file } };
+  const inner = { ...data.common, startsPlaying, modelDescription: { text: modelDescription }, equations: { text: equations }, pulled: pulled && { text: pulled }, system: files[file], laboratory: { files, file, robot } };
   $("page").srcdoc = pageText.replace("@DATA@", () => JSON.stringify(inner).replaceAll("<", "\\u003c"));
   bench.runs++;
   startsPlaying = true; // after a change the system runs at once
@@ -145,7 +145,7 @@ function save(name, content, type) {
 
 // Returns this page with the present files.
 function pageNow() {
-  const now = JSON.stringify({ ...data, files, file }).replaceAll("<", "\\u003c");
+  const now = JSON.stringify({ ...data, files, file, robot }).replaceAll("<", "\\u003c");
   return template.replace(/(<script id="data" type="application\/json">)[^]*?(<\/script>)/, (all, begin, end) => begin + now + end);
 }
 
@@ -182,6 +182,7 @@ function openExample(name) {
   if (!chosen) return false;
   ({ file } = chosen);
   files = { ...chosen.files };
+  robot = [];
   listFiles();
   return true;
 }

@@ -66,15 +66,17 @@ def language():
     return {name: [kind(*pair) for pair in schema.kinds(name)] for name in schema.elements}
 
 
-def editor_of(system, laboratory, examples=None, home=None):
+def editor_of(system, laboratory, examples=None, home=None, robot=()):
     """
     Return the page as text. `laboratory` is the path of laboratory.wasm. `examples` has further systems by name, as of files_of(); the page opens the
-    one that its address names after "#". `home` is the address of a page to which it links.
+    one that its address names after "#". `home` is the address of a page to which it links. `robot` has options for the file of a robot, such as
+    "base=floating".
     """
     if not Path(laboratory).exists():
         raise Problem(f"there is no {laboratory}, which derives systems in the page; run scripts/package/laboratory")
     data = {
         **files_of(system),
+        "robot": list(robot),
         "examples": examples or {},
         "home": home,
         "laboratory": packed(Path(laboratory).read_bytes()),
@@ -89,6 +91,6 @@ def editor_of(system, laboratory, examples=None, home=None):
     return filled("editor.html", TITLE=html.escape(title), STYLE=style, DATA=json_of(data), SCRIPT=script_of(BEGIN))
 
 
-def write_editor(system, laboratory, path, examples=None, home=None):
+def write_editor(system, laboratory, path, examples=None, home=None, robot=()):
     """Write the page and return its path."""
-    return write_whole(path, editor_of(system, laboratory, examples, home))
+    return write_whole(path, editor_of(system, laboratory, examples, home, robot))

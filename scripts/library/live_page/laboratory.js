@@ -17,10 +17,10 @@ class Laboratory {
     this.wasm._initialize();
   }
 
-  // Derives the system of a file; true on success. lagc's messages are in `messages`.
-  derive(name, isPulled) {
+  // Derives the system of a file; true on success. lagc's messages are in `messages`. robot: options for the file of a robot.
+  derive(name, isPulled, robot) {
     try {
-      return this.wasm.derive(this.textIn(`/${name}`), Number(isPulled)) === 0;
+      return this.wasm.derive(this.textIn(`/${name}`), Number(isPulled), this.textIn(robot.join("\n"))) === 0;
     } catch (problem) {
       this.messages += this.messages ? "" : `${name}: the system is too large to be derived here (${problem.message})\n`;
       return false;
@@ -164,8 +164,8 @@ class Laboratory {
 }
 
 // Derives a system and returns the functions of its module; throws lagc's messages on failure.
-function derivedIn({ bytes, files, file }, isPulled) {
+function derivedIn({ bytes, files, file, robot }, isPulled) {
   const system = new Laboratory(bytes, files);
-  if (!system.derive(file, isPulled)) throw new Error(system.messages);
+  if (!system.derive(file, isPulled, robot)) throw new Error(system.messages);
   return system.wasm;
 }

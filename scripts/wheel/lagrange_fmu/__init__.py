@@ -492,7 +492,7 @@ def live(system: str | PathLike[str], output: str | PathLike[str] | None = None,
     start_values : dict, optional
         Start values, parameters and inputs by name with which the page begins, as numbers or texts such as "30deg"; not with `edit`.
     robot : dict, optional
-        Options for a robot, as for build(); not with `edit`.
+        Options for a robot, as for build().
 
     Returns
     -------

@@ -45,10 +45,15 @@ def origin_of(system, words=()):
     return Origin(system_file(system), LAGC, lambda code, name: one_file(runtime, runtime / "global_names", 2, code, name), tuple(words))
 
 
-def robot_words(robot):
-    """Return the arguments of lagc for options of a robot, such as {"base": "floating", "ground": True}."""
+def robot_texts(robot):
+    """Return options of a robot, such as {"base": "floating", "ground": True}, as texts such as "base=floating"."""
     texts = {word: str(value).lower() if isinstance(value, bool) else value for word, value in (robot or {}).items()}
-    return [part for word, value in texts.items() for part in ("--robot", f"{word}={value if isinstance(value, str) else ' '.join(value)}")]
+    return [f"{word}={value if isinstance(value, str) else ' '.join(value)}" for word, value in texts.items()]
+
+
+def robot_words(robot):
+    """Return the arguments of lagc for options of a robot."""
+    return [word for text in robot_texts(robot) for word in ("--robot", text)]
 
 
 def derive(system, folder, solver, words=()):

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from .building import origin_of, robot_words, system_file
+from .building import origin_of, robot_texts, robot_words, system_file
 from .caching import share_zig_cache
 from .live_page.editor import write_editor
 from .live_page.page import write_page
@@ -13,23 +13,21 @@ from .simulation import settings_of
 LABORATORY = Path(__file__).parent / "live_page" / "laboratory.wasm"
 
 
-def editor(system, output=None):
+def editor(system, output=None, robot=None):
     """Write the page in which the system can be changed; return its path."""
     if is_fmu(system):
         raise Problem(f"{system} is an FMU, which cannot be edited; expected the system.xml of which it was made")
     file = system_file(system)
     name = file.parent.resolve().name if file.name == "system.xml" else file.stem
-    return write_editor(file, LABORATORY, output or Path(f"{name}-edit.html"))
+    return write_editor(file, LABORATORY, output or Path(f"{name}-edit.html"), robot=robot_texts(robot))
 
 
 def live(system, settings=None, output=None, edit=False, robot=None):
     """See lagrange_fmu.live."""
     if edit and settings:
         raise Problem(f"an editable page of {system} starts with the values in the file; expected edit=True without {', '.join(settings)}")
-    if edit and robot:
-        raise Problem(f"an editable page of {system} starts with the file itself; expected edit=True without {', '.join(robot)}, or a <system> with an <include>")
     if edit:
-        return editor(system, output)
+        return editor(system, output, robot)
     share_zig_cache()
     with fmu_of(system, words=robot_words(robot)) as fmu:
         return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system, robot_words(robot)), settings_of(fmu, settings))
