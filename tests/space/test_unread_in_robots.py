@@ -98,6 +98,31 @@ def test_elements_of_simulators_that_do_nothing(text, tmp_path):
     assert warnings_of("rotor.urdf", ROTOR.replace("</robot>", f"<gazebo>{text}</gazebo></robot>"), QUIET, tmp_path) == []
 
 
+def test_gains_without_units_are_reported_once(tmp_path):
+    """Of the values of all inputs of a file the first one is reported."""
+    (tmp_path / "rotor.urdf").write_text(ROTOR)
+    robots = "\n".join(f'<include file="rotor.urdf" as="{name}" {QUIET.replace("floating", "fixed")}><input name="hinge_torque" value="-30*{name}.hinge - 2*{name}.hinge_velocity"/></include>' for name in "ab")
+    (tmp_path / "system.xml").write_text(f'<system name="S">\n{robots}</system>')
+    reported = re.findall("^system.xml:(.*) warning: (.*)", lagc("system.xml", "-o", "out", cwd=tmp_path).stderr, re.MULTILINE)
+    assert [line for line, _ in reported] == ["2:"] and reported[0][1].endswith("; further values of inputs give no such warning")
+
+
+@pytest.mark.parametrize(
+    "ground, contact, message",
+    [
+        ('ground="wheel"', "", "there is no link 'wheel' for the ground; expected one of the links: stand, rotor"),
+        ('ground="rotor"', "", "the link 'rotor' has no shape that could stand on the ground; expected a <collision> or <geom> in it, or one of the links with such shapes: stand"),
+        ("", '<contact name="c" between="r.stand_collision1" and="wall" stiffness="1"/>', "there is no shape 'wall' above this <contact>; expected one of the shapes there: r.stand_collision1, floor"),
+        ("", '<contact name="c" between="r.stand_collision1" and="flor" stiffness="1"/>', "there is no shape 'flor' above this <contact>; did you mean 'floor'? The shapes are: r.stand_collision1, floor"),
+    ],
+)
+def test_messages_list_links_and_shapes(ground, contact, message, tmp_path):
+    (tmp_path / "rotor.urdf").write_text(ROTOR.replace('"stand">', '"stand"><collision><geometry><sphere radius="1"/></geometry></collision>', 1))
+    (tmp_path / "system.xml").write_text(f'<system name="S"><include file="rotor.urdf" as="r" base="floating" {ground}/><shape name="floor" type="plane"/>{contact}</system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and message in result.stderr, result.stderr
+
+
 def test_names_in_other_alphabets(tmp_path):
     """Letters become their code points, so that names of equal length differ."""
     text = ROTOR.replace('"rotor"', '"腕"').replace('"stand"', '"脚"').replace('"hinge"', '"é1"')

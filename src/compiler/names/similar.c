@@ -4,10 +4,11 @@
 #include <stdbool.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "base/sorting.h"
 
-/* Names of this length or more have no similar names. It bounds the table of distances. */
-enum { NAME_LIMIT = 40 };
+/* Names of this length or more have no similar names. It bounds the table of distances. LIST_LIMIT: names in a list. */
+enum { NAME_LIMIT = 40, LIST_LIMIT = 12 };
 
 static bool is_same_letter(char a, char b) {
   return tolower((unsigned char)a) == tolower((unsigned char)b);
@@ -77,4 +78,11 @@ void similar_consider(struct SimilarName *similar, const char *known) {
 void similar_consider_all(struct SimilarName *similar, const struct Names *names) {
   for (size_t i = 0; i < names->capacity; i++)
     if (names->slots[i].text != NULL) similar_consider(similar, names->slots[i].text);
+}
+
+char *list_of_names(const char *const *names, size_t count) {
+  char *list = copy_text("");
+  size_t shown = count > LIST_LIMIT ? LIST_LIMIT - 1 : count;
+  for (size_t i = 0; i < shown; i++) list = format_text("%s%s%s", list, i > 0 ? ", " : "", names[i]);
+  return shown < count ? format_text("%s and %zu others", list, count - shown) : list;
 }

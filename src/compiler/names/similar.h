@@ -16,5 +16,8 @@ struct SimilarName {
  */
 void similar_consider(struct SimilarName *similar, const char *known);
 
+/* Returns the names as a text for messages: the first ones, and the number of the others. */
+char *list_of_names(const char *const *names, size_t count);
+
 /* Considers all names of a table. */
 void similar_consider_all(struct SimilarName *similar, const struct Names *names);

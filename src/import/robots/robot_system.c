@@ -22,6 +22,7 @@
 
 #include "base/memory.h"
 #include "model/kinematics.h"
+#include "names/similar.h"
 #include "robots/description/robot_file.h"
 #include "robots/mjcf/mjcf.h"
 #include "robots/robot_elements.h"
@@ -280,6 +281,19 @@ static void check_rims(const struct Robot *robot, const struct RobotOptions *opt
   }
 }
 
+/* Returns the links that can touch the ground, for messages; "none" without any. */
+static char *standing_links(const struct Robot *robot, const struct RobotOptions *options) {
+  const char **names = allocate(robot->link_count + 1, sizeof *names);
+  size_t count = 0;
+  for (size_t i = 0; i < robot->link_count; i++) {
+    const struct RobotLink *link = robot->links[i];
+    size_t clear = 0;
+    for (size_t j = 0; j < link->collision_count; j++) clear += link->collisions[j].is_clear;
+    if (clear < link->collision_count && carrier_moves(link, options->floats)) names[count++] = link->name;
+  }
+  return count > 0 ? list_of_names(names, count) : copy_text("none");
+}
+
 /* Reports unknown links that should touch the ground, and those without a suitable shape. */
 static void check_ground_contact(const struct Robot *robot, const struct RobotOptions *options,
                                  struct Diagnostics *diagnostics) {
@@ -290,10 +304,12 @@ static void check_ground_contact(const struct Robot *robot, const struct RobotOp
     size_t clear = 0;
     for (size_t i = 0; link != NULL && i < link->collision_count; i++) clear += link->collisions[i].is_clear;
     if (link != NULL && link->collision_count == clear)
-      report_error(
-          diagnostics, link->line,
-          "the link '%s' has no shape that could stand on the ground; expected a <collision> or <geom> in it%s", name,
-          clear > 0 ? ", which its contype, conaffinity or <exclude> let touch the plane" : "");
+      report_error(diagnostics, link->line,
+                   "the link '%s' has no shape that could stand on the ground; expected a <collision> or <geom> in "
+                   "it%s, or one of "
+                   "the links with such shapes: %s",
+                   name, clear > 0 ? ", which its contype, conaffinity or <exclude> let touch the plane" : "",
+                   standing_links(robot, options));
   }
 }
 

@@ -360,11 +360,16 @@ static void check_inertia(struct Connection *connection) {
 struct RobotLink *robot_link(const struct Robot *robot, const char *name, const char *what,
                              struct Diagnostics *diagnostics) {
   struct SimilarName similar = {.wanted = name};
+  const char **names = allocate(robot->link_count + 1, sizeof *names);
   for (size_t i = 0; i < robot->link_count; i++) {
-    if (strcmp(robot->links[i]->name, name) == 0) return robot->links[i];
-    similar_consider(&similar, robot->links[i]->name);
+    names[i] = robot->links[i]->name;
+    if (strcmp(names[i], name) == 0) return robot->links[i];
+    similar_consider(&similar, names[i]);
   }
-  report_missing("link", name, what, 0, &similar, diagnostics);
+  if (similar.best != NULL) report_missing("link", name, what, 0, &similar, diagnostics);
+  else
+    report_error(diagnostics, 0, "there is no link '%s' for %s; expected one of the links: %s", name, what,
+                 list_of_names(names, robot->link_count));
   return NULL;
 }
 

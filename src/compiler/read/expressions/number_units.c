@@ -30,11 +30,17 @@ static const char *missing_unit(struct Quantity quantity, struct Dimension expec
   return dimension_is_whole(unit) ? unit_text(unit) : "...";
 }
 
+/* True if the problem is in the value of an input, such as a controller's. Of a file with many the first one counts. */
+static bool is_of_input(const char *problem) {
+  return strstr(problem, "value of <input>") != NULL || strstr(problem, "value of the input") != NULL;
+}
+
 bool number_may_have_unit(struct Scope *scope, long line, struct Quantity quantity, struct Dimension expected,
                           const char *problem) {
   const char *number = quantity.factor.text;
   if (number == NULL) return false;
-  char *location = format_text("%s:%ld:%s", scope->diagnostics->file, line, number);
+  char *location = is_of_input(problem) ? format_text("%s:<input>", scope->diagnostics->file)
+                                        : format_text("%s:%ld:%s", scope->diagnostics->file, line, number);
   if (definitions_are_waiting(scope->definitions) || names_find(scope->warned_numbers, location) != NULL) return true;
   names_set(scope->warned_numbers, location, location);
   const char *unit = missing_unit(quantity, expected);
@@ -45,7 +51,8 @@ bool number_may_have_unit(struct Scope *scope, long line, struct Quantity quanti
   else
     report_warning(scope->diagnostics, line,
                    "%s; %s is a number without a unit: if it has one, write it as <constant name=\"...\" value=\"%s\" "
-                   "unit=\"%s\"/>",
-                   problem, number, number, unit);
+                   "unit=\"%s\"/>%s",
+                   problem, number, number, unit,
+                   is_of_input(problem) ? "; further values of inputs give no such warning" : "");
   return true;
 }

@@ -188,15 +188,27 @@ void place_shape(struct Reader *reader, xmlNodePtr node) {
                 power_number(graph, vector_dot(graph, shape->size, shape->size), 0.5), true);
 }
 
+static void report_missing_shape(struct Reader *reader, xmlNodePtr node, const char *name) {
+  struct SimilarName similar = {.wanted = name};
+  size_t count = reader->model->mechanism.shape_count;
+  const char **names = allocate(count + 1, sizeof *names);
+  for (size_t i = 0; i < count; i++) {
+    names[i] = reader->model->mechanism.shapes[i].name;
+    similar_consider(&similar, names[i]);
+  }
+  const char *list = count > 0 ? list_of_names(names, count) : "none yet; expected a <shape>";
+  if (similar.best != NULL)
+    report_at(reader, node, "there is no shape '%s' above this <contact>; did you mean '%s'? The shapes are: %s", name,
+              similar.best, list);
+  else
+    report_at(reader, node, "there is no shape '%s' above this <contact>; expected one of the shapes there: %s", name,
+              list);
+}
+
 const struct ContactShape *shape_of_attribute(struct Reader *reader, xmlNodePtr node, const char *attribute_name) {
   char *name = reference_attribute(reader, node, attribute_name);
   const struct ContactShape *shape = name != NULL ? find_shape(reader, name) : NULL;
   if (shape != NULL || name == NULL) return shape;
-  struct SimilarName similar = {.wanted = name};
-  for (size_t i = 0; i < reader->model->mechanism.shape_count; i++)
-    similar_consider(&similar, reader->model->mechanism.shapes[i].name);
-  if (similar.best != NULL)
-    report_at(reader, node, "there is no shape '%s' above this <contact>; did you mean '%s'?", name, similar.best);
-  else report_at(reader, node, "there is no shape '%s' above this <contact>; expected the name of a <shape>", name);
+  report_missing_shape(reader, node, name);
   return NULL;
 }
