@@ -34,6 +34,7 @@ LAGC = Layers(
     src/compiler/xml
     src/import/meshes
     src/import/robots/description
+    src/import/robots/expansion
     src/import/robots/mjcf
     src/import/robots
     src/compiler/read/tables

@@ -209,6 +209,62 @@ DRIVEN = """\
 </mujoco>
 """
 
+# Actuators at sites, and at free and ball joints: forces and torques along the axes of the site, of the body, or of its parent.
+PUSHED = """\
+<mujoco model="pushed">
+  <compiler angle="radian"/>
+  <worldbody>
+    <site name="post" pos="1 0 0"/>
+    <body name="drone" euler="0.3 0.2 0.1"><joint name="drone" type="free"/><geom type="box" size="0.2 0.1 0.3" pos="0.1 0.2 0"/>
+      <site name="rotor" pos="0.2 0.1 0.3" euler="0.3 0.4 0.5"/><site name="drone" pos="0 0.1 0"/>
+      <body name="head" pos="0 0 0.3"><joint name="neck" type="ball" pos="0.1 0 0"/><geom type="box" size="0.1 0.1 0.2" pos="0.1 0 0.2"/><site name="nose" pos="0.1 0.2 0.3"/></body>
+    </body>
+    <body name="arm" pos="1 0 0"><joint name="hinge" axis="0 1 0.2"/><geom type="box" size="0.2 0.1 0.3" pos="0.1 0.2 0"/><site name="hand" pos="0.2 0.1 0.3" euler="0.3 0.4 0.5"/>
+      <body name="ball" pos="0.2 0 0" euler="0.1 0.2 0"><joint name="wrist" type="ball"/><geom type="box" size="0.1 0.1 0.2" pos="0.1 0 0.2"/></body>
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="thrust" site="rotor" gear="0 0.2 1 0 0.3 -0.02" ctrlrange="-1 2"/>
+    <motor name="twist" site="nose" gear="0 0 0 0.1 -0.2 0.3"/>
+    <general site="drone" gainprm="3" biastype="affine" biasprm="0.2" gear="2" forcerange="-4 5"/>
+    <motor name="tip" site="hand" gear="1 2 3 0.4 0.5 0.6"/>
+    <motor name="nothing" site="post" gear="1 2 3"/>
+    <motor name="fly" joint="drone" gear="1 2 3 0.4 0.5 0.6"/>
+    <motor name="fall" jointinparent="drone" gear="0 0 0.5 0.4 -0.5 0.6"/>
+    <motor name="nod" joint="neck" gear="1 -2 0.5"/>
+    <motor name="shake" jointinparent="wrist" gear="1 -2 0.5"/>
+    <motor jointinparent="hinge" gear="3"/>
+  </actuator>
+</mujoco>
+"""
+
+# Copies, also of copies, with zeros in front of the numbers of eleven; what refers to them comes last in each section.
+COPIED = """\
+<mujoco model="copied">
+  <compiler eulerseq="XYz"/>
+  <worldbody>
+    <body name="base"><joint name="turn" axis="0 0 1"/><geom size="0.1"/>
+      <replicate count="3" sep="_" offset="0.4 0 0.1" euler="10 20 30">
+        <body name="arm" pos="0.5 0 0" euler="0 10 0"><joint name="h" axis="0 1 0" damping="0.2"/><geom size="0.1" pos="0.2 0.1 0.3"/><site name="s" pos="0.1 0.1 0.1"/>
+          <replicate count="2" offset="0 0 0.3"><body name="finger" pos="0.1 0 0"><joint name="f" axis="1 0 0.1"/><geom type="box" size="0.1 0.05 0.2" pos="0 0 0.2"/><site name="end" pos="0 0 0.3"/></body></replicate>
+        </body>
+        <geom type="box" size="0.1 0.2 0.1" pos="0 0.3 0"/>
+      </replicate>
+    </body>
+    <replicate count="11" offset="0 0.3 0"><body name="bob" pos="2 0 0"><joint name="swing" axis="0 1 0" stiffness="2"/><geom size="0.1" pos="0 0 -0.4"/></body></replicate>
+  </worldbody>
+  <tendon>
+    <fixed name="both"><joint joint="f" coef="2"/><joint joint="h" coef="-1"/></fixed>
+    <spatial name="line" stiffness="3" damping="0.2" springlength="0.2"><site site="s"/><site site="end"/></spatial>
+    <fixed name="own"><joint joint="turn" coef="1"/></fixed>
+  </tendon>
+  <actuator>
+    <motor name="m" joint="h"/><motor name="turn" joint="turn"/><motor name="pull" tendon="both"/><motor name="swing" joint="swing" gear="2"/><motor name="push" site="end" gear="0.1 0.2 0.3"/>
+  </actuator>
+  <contact><exclude body1="arm" body2="base"/></contact>
+</mujoco>
+"""
+
 # Between two lengths the tendon's spring is slack.
 SLACK = """\
 <mujoco model="slack">
@@ -331,7 +387,7 @@ class Generator:
         )
 
 
-FILES = {"Each": EACH} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
+FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
 
 
 @pytest.fixture(scope="module", autouse=True)

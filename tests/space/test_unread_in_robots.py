@@ -147,7 +147,7 @@ MJCF_CASES = [
     ("joint", 'solreflimit="0.01 1"', 'limits="stops"', "a rigid limit, friction or constraint without it"),
     ("joint", 'springyield="1"', "", "a <force> in a <system>"),
     ("joint", 'unheard="1"', "", "one of the attributes that the reference names"),
-    ("motor", 'velrange="-1 1"', "", "an actuator at a joint or tendon, without it"),
+    ("motor", 'velrange="-1 1"', "", "an actuator at a joint, tendon or site, without it"),
 ]
 
 

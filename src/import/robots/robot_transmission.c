@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "base/memory.h"
+#include "model/kinematics.h"
 #include "robots/robot_joint.h"
 #include "robots/robot_tree.h"
 
@@ -59,7 +60,6 @@ char *transmission_rate(const struct Transmission *transmission) {
 /* Writes a force on one end of a segment, directed away from the other end. */
 static void write_site_force(const struct Writer *writer, const struct RobotLink *end, const struct RobotLink *other,
                              const char *force) {
-  static const char *const axes[] = {"x", "y", "z"};
   xmlNodePtr node = write_element(writer, "force");
   set_attribute(node, "on", copy_text(end->symbol));
   for (int i = 0; i < 3; i++)
@@ -185,6 +185,44 @@ static char *with_bias(const struct Writer *writer, const struct Actuator *actua
   return format_text("%s + %s_bias", force, name);
 }
 
+static bool has_force(const struct Wrench *wrench) {
+  return wrench->force[0] != 0 || wrench->force[1] != 0 || wrench->force[2] != 0;
+}
+
+/* Writes a <force> or <torque> of these components on a link, reversed if the sign is -1. frame: NULL for the base. */
+static void write_load(const struct Writer *writer, const char *kind, const struct RobotLink *link,
+                       const struct RobotLink *frame, int sign, char *const components[3]) {
+  if (link == NULL || !carrier_moves(link, writer->options->floats)) return;
+  if (components[0] == NULL && components[1] == NULL && components[2] == NULL) return;
+  xmlNodePtr node = write_element(writer, kind);
+  set_attribute(node, "on", copy_text(link->symbol));
+  if (frame != NULL) set_attribute(node, "in", copy_text(frame->symbol));
+  for (int i = 0; i < 3; i++)
+    if (components[i] != NULL) set_attribute(node, axes[i], format_text("%s%s", sign < 0 ? "-" : "", components[i]));
+}
+
+/* Writes the force and torque. Beside a force, the torque by force is a parameter, as it is a length. */
+static void write_wrench(const struct Writer *writer, const struct Wrench *wrench, const char *name, char *force) {
+  char *forces[3] = {NULL}, *torques[3] = {NULL};
+  xmlNodePtr definition = write_element(writer, "define");
+  set_attribute(definition, "name", format_text("%s_force", name));
+  set_content(definition, force);
+  for (int i = 0; i < 3; i++) {
+    if (wrench->force[i] != 0) forces[i] = format_text("%s*%s_force", number(wrench->force[i]), name);
+    if (wrench->torque[i] == 0) continue;
+    char *factor = number(wrench->torque[i]);
+    if (has_force(wrench)) {
+      factor = format_text("%s_torque_%s", name, axes[i]);
+      write_parameter(writer, factor, wrench->torque[i], "m", format_text("torque about %s by force", axes[i]));
+    }
+    torques[i] = format_text("%s*%s_force", factor, name);
+  }
+  struct RobotLink *const *links = wrench->links;
+  write_load(writer, "force", links[WRENCH_LINK], links[FORCE_AXES], 1, forces);
+  write_load(writer, "torque", links[WRENCH_LINK], links[TORQUE_AXES], 1, torques);
+  write_load(writer, "torque", links[WRENCH_SUPPORT], links[TORQUE_AXES], -1, torques);
+}
+
 /*
  * The control of a servo is a position, if gain = -bias[1], or a velocity, if gain = -bias[2] without a spring. The
  * control of a pure variable gain is a number. Any other control is a force or scales one. The control of an integrator
@@ -192,8 +230,10 @@ static char *with_bias(const struct Writer *writer, const struct Actuator *actua
  */
 void write_actuator(const struct Writer *writer, const struct Actuator *actuator) {
   const struct Transmission *transmission = &actuator->transmission;
-  bool slides = transmission_slides(transmission), has_spring = actuator->bias[1] != 0,
-       has_damper = actuator->bias[2] != 0, varies = actuator->gain[1] != 0 || actuator->gain[2] != 0;
+  const struct Wrench *wrench = actuator->wrench;
+  bool slides = wrench != NULL ? has_force(wrench) : transmission_slides(transmission),
+       has_spring = actuator->bias[1] != 0, has_damper = actuator->bias[2] != 0,
+       varies = actuator->gain[1] != 0 || actuator->gain[2] != 0;
   bool is_servo = !varies && has_spring && actuator->gain[0] == -actuator->bias[1];
   bool is_prescribed_motion = !varies && !has_spring && has_damper && actuator->gain[0] == -actuator->bias[2];
   char *name = format_text("%s_control", robot_symbol(actuator->name)), *gear = number(actuator->gear);
@@ -202,11 +242,11 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
                      : varies && actuator->gain[0] == 0 ? "1"
                      : slides                           ? "N"
                                                         : "N.m";
-  struct ActuatorTerms terms = {.name = name,
-                                .control = clamped(actuator->control, name),
-                                .length = format_text("(%s*%s)", gear, transmission_length(transmission)),
-                                .rate = format_text("(%s*%s)", gear, transmission_rate(transmission)),
-                                .slides = slides};
+  struct ActuatorTerms terms = {.name = name, .control = clamped(actuator->control, name), .slides = slides};
+  if (wrench == NULL) {
+    terms.length = format_text("(%s*%s)", gear, transmission_length(transmission));
+    terms.rate = format_text("(%s*%s)", gear, transmission_rate(transmission));
+  }
   xmlNodePtr input = write_element(writer, "input");
   set_attribute(input, "name", name);
   set_attribute(input, "unit", actuator->dynamics == INTEGRATOR ? format_text("%s.s-1", unit) : copy_text(unit));
@@ -219,5 +259,7 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
                 : varies               ? variable_gain(writer, actuator, &terms)
                                        : format_text("%s*%s", number(actuator->gain[0]), terms.control);
   force = with_bias(writer, actuator, &terms, force);
-  write_term(writer, transmission, gear, name, clamped(actuator->force, force), true);
+  force = clamped(actuator->force, force);
+  if (wrench != NULL) write_wrench(writer, wrench, name, force);
+  else write_term(writer, transmission, gear, name, force, true);
 }

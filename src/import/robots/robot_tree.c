@@ -297,6 +297,16 @@ static void connect_transmission(struct Connection *connection, struct Transmiss
   }
 }
 
+static void connect_wrench(struct Connection *connection, const struct Actuator *actuator) {
+  struct Wrench *wrench = actuator->wrench;
+  for (int i = 0; i < WRENCH_LINKS; i++) {
+    const struct RegisterEntry *entry =
+        wrench->names[i] != NULL ? find(connection, &connection->links, wrench->names[i], "an actuator", actuator->line)
+                                 : NULL;
+    if (entry != NULL) wrench->links[i] = connection->robot->links[entry->index];
+  }
+}
+
 static void connect_transmissions(struct Connection *connection) {
   struct Robot *robot = connection->robot;
   for (size_t i = 0; i < robot->tendon_count; i++) {
@@ -306,6 +316,10 @@ static void connect_transmissions(struct Connection *connection) {
   }
   for (size_t i = 0; i < robot->actuator_count; i++) {
     struct Actuator *actuator = &robot->actuators[i];
+    if (actuator->wrench != NULL) {
+      connect_wrench(connection, actuator);
+      continue;
+    }
     if (actuator->transmission.site_count > 0 || actuator->transmission.terms->joint != NULL)
       continue; /* the link of a tendon is already resolved */
     connect_transmission(connection, &actuator->transmission, "actuator", actuator->name, "", actuator->line);

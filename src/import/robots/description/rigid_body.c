@@ -1,5 +1,6 @@
 #include "robots/description/rigid_body.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stddef.h>
 
@@ -70,7 +71,7 @@ void placement_angles(const struct Placement *placement, double angles[3]) {
   angles[0] = exact_quarter_turns(atan2(s * r[0][2] - c * r[1][2], c * r[1][1] - s * r[0][1]));
 }
 
-static void rotate(const struct Matrix3 *rotation, const double vector[3], double rotated[3]) {
+void rotation_apply(const struct Matrix3 *rotation, const double vector[3], double rotated[3]) {
   for (int i = 0; i < 3; i++)
     rotated[i] = rotation->at[i][0] * vector[0] + rotation->at[i][1] * vector[1] + rotation->at[i][2] * vector[2];
 }
@@ -84,6 +85,17 @@ struct Matrix3 product(const struct Matrix3 *first, const struct Matrix3 *second
   return both;
 }
 
+struct Matrix3 rotation_of_euler(const char *sequence, const double angles[3]) {
+  struct Matrix3 rotation = no_displacement.rotation;
+  for (int i = 0; i < 3; i++) {
+    double axis[3] = {0};
+    axis[tolower((unsigned char)sequence[i]) - 'x'] = 1;
+    struct Matrix3 step = rotation_about(axis, angles[i]);
+    rotation = isupper((unsigned char)sequence[i]) ? product(&step, &rotation) : product(&rotation, &step);
+  }
+  return rotation;
+}
+
 static struct Matrix3 transposed(const struct Matrix3 *matrix) {
   struct Matrix3 other;
   for (int i = 0; i < 3; i++)
@@ -93,21 +105,21 @@ static struct Matrix3 transposed(const struct Matrix3 *matrix) {
 
 struct Placement placement_within(const struct Placement *outer, const struct Placement *inner) {
   struct Placement both = {.rotation = product(&outer->rotation, &inner->rotation)};
-  rotate(&outer->rotation, inner->translation, both.translation);
+  rotation_apply(&outer->rotation, inner->translation, both.translation);
   for (int i = 0; i < 3; i++) both.translation[i] += outer->translation[i];
   return both;
 }
 
 struct Placement placement_between(const struct Placement *first, const struct Placement *second) {
   struct Placement back = {.rotation = transposed(&first->rotation)};
-  rotate(&back.rotation, first->translation, back.translation);
+  rotation_apply(&back.rotation, first->translation, back.translation);
   for (int i = 0; i < 3; i++) back.translation[i] = -back.translation[i];
   return placement_within(&back, second);
 }
 
 struct RigidBody body_seen_from(const struct Placement *placement, const struct RigidBody *body) {
   struct RigidBody seen = {.mass = body->mass};
-  rotate(&placement->rotation, body->center, seen.center);
+  rotation_apply(&placement->rotation, body->center, seen.center);
   for (int i = 0; i < 3; i++) seen.center[i] += placement->translation[i];
   struct Matrix3 back = transposed(&placement->rotation), half = product(&placement->rotation, &body->tensor);
   seen.tensor = product(&half, &back);

@@ -31,8 +31,17 @@ struct Placement placement_of(const double translation[3], const double angles[3
 /* Returns the rotation by an angle about a unit vector (Rodrigues' formula). */
 struct Matrix3 rotation_about(const double axis[3], double angle);
 
+/*
+ * Returns the rotation by Euler angles in a sequence such as "xyz". Capital letters rotate about the axes of the outer
+ * frame (extrinsic), small ones about the rotated axes (intrinsic).
+ */
+struct Matrix3 rotation_of_euler(const char *sequence, const double angles[3]);
+
 /* Returns the matrix product. */
 struct Matrix3 product(const struct Matrix3 *first, const struct Matrix3 *second);
+
+/* Sets a vector to the product of a rotation and another vector. */
+void rotation_apply(const struct Matrix3 *rotation, const double vector[3], double rotated[3]);
 
 /* Sets the roll, pitch and yaw of a rotation, see rigid_body.c. */
 void placement_angles(const struct Placement *placement, double angles[3]);

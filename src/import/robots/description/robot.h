@@ -124,6 +124,16 @@ struct Coupling {
 /* Dynamics between the control and the activation, which acts in its place. */
 enum ActuatorDynamics { WITHOUT_STATE, FILTER, INTEGRATOR };
 
+/* The links of a wrench: it acts on one, and reversed on the support; each part is along the axes of a link. */
+enum WrenchLink { WRENCH_LINK, WRENCH_SUPPORT, FORCE_AXES, TORQUE_AXES, WRENCH_LINKS };
+
+/* The force and torque of an actuator at a site, or at a free or ball joint, for an actuator force of 1. */
+struct Wrench {
+  double force[3], torque[3];
+  char *names[WRENCH_LINKS];             /* NULL for no support, or for the axes of the base */
+  struct RobotLink *links[WRENCH_LINKS]; /* results of robot_connect() */
+};
+
 /*
  * A force along a transmission: gear*(gain*control + bias[0] + bias[1]*gear*length + bias[2]*gear*rate). The gain is
  * gain[0] + gain[1]*gear*length + gain[2]*gear*rate.
@@ -131,7 +141,8 @@ enum ActuatorDynamics { WITHOUT_STATE, FILTER, INTEGRATOR };
 struct Actuator {
   char *name;
   long line;
-  struct Transmission transmission; /* of one joint, or that of a tendon */
+  struct Transmission transmission; /* of one joint, or that of a tendon; empty with a wrench */
+  struct Wrench *wrench;            /* NULL for a force along the transmission */
   double gear, gain[3], bias[3];
   enum ActuatorDynamics dynamics;
   double time_constant; /* s; of a filter */

@@ -21,7 +21,8 @@
 #include "robots/mjcf/mjcf_contacts.h"
 #include "robots/mjcf/mjcf_equality.h"
 #include "robots/mjcf/mjcf_geoms.h"
-#include "robots/mjcf/mjcf_includes.h"
+#include "robots/expansion/mjcf_includes.h"
+#include "robots/expansion/mjcf_replicas.h"
 #include "robots/mjcf/mjcf_keyframe.h"
 #include "robots/mjcf/mjcf_tendons.h"
 #include "robots/mjcf/mjcf_tree.h"
@@ -30,8 +31,7 @@
 
 /* Reports unsupported elements, at any depth, that would change the motion. */
 static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const rejected[][2] = {{"replicate", "its copies, as MuJoCo's mj_saveLastXML writes them"},
-                                            {"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
+  static const char *const rejected[][2] = {{"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
                                             {"composite", "rigid bodies"},
                                             {"flexcomp", "rigid bodies"},
                                             {"flex", "rigid bodies"},
@@ -305,6 +305,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   if (diagnostics->errors > errors) return robot;
   for_each(&mjcf, "compiler", false, read_compiler);
   for_each(&mjcf, "option", false, read_option);
+  mjcf_replicate(root, &(struct EulerAngles){mjcf.euler_sequence, mjcf.angle}, diagnostics);
   mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
   mjcf_note_placement(&mjcf, mjcf_world, NULL, &no_displacement);
   for_each(&mjcf, "contact", true, mjcf_read_rule);

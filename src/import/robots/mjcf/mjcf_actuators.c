@@ -98,13 +98,57 @@ static void reject_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuat
                  (const char *)node->name);
 }
 
+/* Returns the attribute that names the joint of an actuator. */
+static const char *joint_attribute(xmlNodePtr node) {
+  return has_attribute(node, "jointinparent") ? "jointinparent" : "joint";
+}
+
+/*
+ * Returns the wrench of an actuator at a site, or at a free or ball joint; NULL for others. As MuJoCo defines it, the
+ * force is along the axes of the site or of the world. The torque is along those of the site or body, or with
+ * jointinparent along those that the body has at the joint's zero.
+ */
+static struct Wrench *wrench_of(struct Mjcf *mjcf, xmlNodePtr node, const double gear[6]) {
+  const char *name = attribute(node, joint_attribute(node));
+  const struct RobotJoint *joint = name != NULL ? mjcf_joint(mjcf, name) : NULL;
+  bool is_free = joint != NULL && joint->type == FLOATING, is_ball = joint != NULL && joint->type == BALL;
+  bool is_at_site = name == NULL && has_attribute(node, "site"), is_in_parent = has_attribute(node, "jointinparent");
+  if (!is_at_site && !is_free && !is_ball) return NULL;
+  struct Wrench *wrench = allocate(1, sizeof *wrench);
+  char *link = is_at_site ? mjcf_site(mjcf, attribute(node, "site")) : joint->child_name;
+  wrench->names[WRENCH_LINK] = link;
+  if (is_at_site && mjcf_placement_of(mjcf, link) == NULL)
+    report_error(mjcf->file.diagnostics, line_of(node), "there is no site '%s' for a <%s>; expected an existing name",
+                 link, (const char *)node->name);
+  if (is_at_site) wrench->names[FORCE_AXES] = link;
+  if (!is_in_parent) wrench->names[TORQUE_AXES] = link;
+  memcpy(wrench->torque, is_ball ? gear : gear + 3, sizeof wrench->torque);
+  if (!is_ball) memcpy(wrench->force, gear, sizeof wrench->force);
+  if (!is_ball) return wrench;
+  wrench->names[WRENCH_SUPPORT] = joint->parent_name;
+  if (!is_in_parent) return wrench;
+  wrench->names[TORQUE_AXES] = joint->parent_name;
+  rotation_apply(&joint->origin.rotation, gear, wrench->torque);
+  return wrench;
+}
+
+/* Reports an actuator whose force depends on a position or velocity, which a wrench does not have. */
+static void check_wrench(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
+  const double *bias = actuator->bias, *gain = actuator->gain;
+  if (bias[1] == 0 && bias[2] == 0 && gain[1] == 0 && gain[2] == 0) return;
+  report_error(mjcf->file.diagnostics, line_of(node),
+               "<%s> at a site, free joint or ball joint is not read, as its force depends on the motion; expected a "
+               "<motor> there",
+               (const char *)node->name);
+}
+
 /* Returns the transmission of a tendon, or of the joint that the element names. */
 static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon) {
   if (tendon != NULL) return tendon->transmission;
   struct TransmissionTerm *term = allocate(1, sizeof *term);
   *term = (struct TransmissionTerm){.coefficient = 1};
   bool is_at_joint = !has_attribute(node, "tendon");
-  if (is_at_joint) term->joint_name = required_attribute(&mjcf->file, node, "joint");
+  if (is_at_joint) term->joint_name = required_attribute(&mjcf->file, node, joint_attribute(node));
   return (struct Transmission){.terms = term, .count = is_at_joint};
 }
 
@@ -115,7 +159,7 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, c
 static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *prefix,
                           double limits[2]) {
   double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
-  const char *joint_name = attribute(node, "joint");
+  const char *joint_name = attribute(node, joint_attribute(node));
   if (share == 0 || mjcf_is(mjcf, node, format_text("%slimited", prefix), "false")) return;
   const struct RobotJoint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
   if (tendon == NULL && joint == NULL) return;
@@ -133,37 +177,42 @@ static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendo
   limits[1] = middle + half;
 }
 
-/* Reports a spatial tendon if a joint limits actuator forces, as its force on single joints is not computed. */
+/* Reports a spatial tendon or wrench if a joint limits actuator forces, as its force on single joints is not computed. */
 static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   const struct Robot *robot = mjcf->file.robot;
-  for (size_t i = 0; i < robot->joint_count && actuator->transmission.site_count > 0; i++)
+  bool acts_in_space = actuator->wrench != NULL || actuator->transmission.site_count > 0;
+  for (size_t i = 0; i < robot->joint_count && acts_in_space; i++)
     if (!isnan(robot->joints[i]->actuator_limits[0])) {
-      report_error(mjcf->file.diagnostics, line_of(node),
-                   "the actuator '%s' pulls along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
-                   "expected forcerange of the actuators in its place",
-                   actuator->name, robot->joints[i]->name);
+      report_error(
+          mjcf->file.diagnostics, line_of(node),
+          "the actuator '%s' acts at a site or along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
+          "expected forcerange of the actuators in its place",
+          actuator->name, robot->joints[i]->name);
       return;
     }
 }
 
 void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const rejected[] = {"actdim", "delay", "damping", "armature"};
+  static const char *const rejected[] = {"actdim", "delay", "damping", "armature", "refsite"};
+  static const char *const places[] = {"tendon", "joint", "jointinparent", "site"};
   struct Robot *robot = mjcf->file.robot;
   size_t kind = kind_of(node);
   if (kind == KINDS) {
-    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint or tendon");
+    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint, tendon or site");
     return;
   }
   const char *tendon_name = attribute(node, "tendon");
   const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
-  struct Actuator actuator = {
-      .name = attribute(node, "name"), .line = line_of(node), .transmission = transmission_of(mjcf, node, tendon)};
-  if (actuator.name == NULL) actuator.name = attribute(node, has_attribute(node, "tendon") ? "tendon" : "joint");
   double gear[6] = {1};
   mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
-  actuator.gear = gear[0];
+  struct Actuator actuator = {
+      .name = attribute(node, "name"), .line = line_of(node), .gear = gear[0], .wrench = wrench_of(mjcf, node, gear)};
+  if (actuator.wrench == NULL) actuator.transmission = transmission_of(mjcf, node, tendon);
+  for (size_t i = 0; i < sizeof places / sizeof *places && actuator.name == NULL; i++)
+    actuator.name = attribute(node, places[i]);
   mjcf_check_laws(mjcf, node);
   kinds[kind].read(mjcf, node, &actuator);
+  if (actuator.wrench != NULL) check_wrench(mjcf, node, &actuator);
   reject_ratio(mjcf, node, &actuator);
   mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
   mjcf_limits(mjcf, node, "actrange", "actlimited", actuator.activation);

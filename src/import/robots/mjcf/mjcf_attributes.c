@@ -61,11 +61,10 @@ static const struct Attributes table[] = {
      "actdim actearly actlimited actrange armature biasprm biastype class cranklength ctrllimited ctrlrange damping "
      "dampratio delay dynprm dyntype forcelimited forcerange gainprm gaintype gear group inheritrange interp joint kp "
      "kv "
-     "lengthrange name nsample tendon timeconst user area diameter bias",
+     "lengthrange name nsample tendon timeconst user area diameter bias jointinparent site refsite",
      NULL, ALWAYS_ACTS},
-    {"general motor position velocity damper intvelocity cylinder",
-     "cranksite slidersite jointinparent site refsite body ffrange input velrange",
-     "an actuator at a joint or tendon, without it", ALWAYS_ACTS},
+    {"general motor position velocity damper intvelocity cylinder", "cranksite slidersite body ffrange input velrange",
+     "an actuator at a joint, tendon or site, without it", ALWAYS_ACTS},
     {0},
 };
 

@@ -1,6 +1,5 @@
 #include "robots/mjcf/mjcf_values.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -213,22 +212,6 @@ struct Matrix3 rotation_of_quaternion(const double q[4]) {
   return length > 0 ? rotation_about(axis, 2 * atan2(length, q[0])) : no_displacement.rotation;
 }
 
-/*
- * Returns the rotation by Euler angles in the file's sequence. Capital letters rotate about the parent's axes
- * (extrinsic), small ones about the rotated axes (intrinsic).
- */
-static struct Matrix3 of_euler(const struct Mjcf *mjcf, const double angles[3]) {
-  struct Matrix3 rotation = no_displacement.rotation;
-  for (int i = 0; i < 3; i++) {
-    char letter = mjcf->euler_sequence[i];
-    double axis[3] = {0};
-    axis[tolower((unsigned char)letter) - 'x'] = 1;
-    struct Matrix3 step = rotation_about(axis, angles[i] * mjcf->angle);
-    rotation = isupper((unsigned char)letter) ? product(&step, &rotation) : product(&rotation, &step);
-  }
-  return rotation;
-}
-
 /* Sets the rotation from an x axis and a y axis, which is made orthogonal to x. Returns false if they are parallel. */
 static bool of_axes(const double given[6], struct Matrix3 *rotation) {
   double x[3] = {given[0], given[1], given[2]}, y[3] = {given[3], given[4], given[5]}, z[3];
@@ -258,6 +241,12 @@ static size_t orientation_of(struct Mjcf *mjcf, xmlNodePtr node, const char *con
   kind = 0;
   while (kind < ORIENTATIONS && mjcf_text(mjcf, node, names[kind]) == NULL) kind++;
   return kind;
+}
+
+static struct Matrix3 of_euler(const struct Mjcf *mjcf, const double given[3]) {
+  double angles[3];
+  for (int i = 0; i < 3; i++) angles[i] = given[i] * mjcf->angle;
+  return rotation_of_euler(mjcf->euler_sequence, angles);
 }
 
 struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node) {

@@ -1,4 +1,4 @@
-#include "robots/mjcf/mjcf_includes.h"
+#include "robots/expansion/mjcf_includes.h"
 
 #include <errno.h>
 #include <string.h>

@@ -1,0 +1,218 @@
+/*
+ * Copies of a <replicate count offset euler sep>. Copy i is in a <frame> with the rotation R_i by i times the Euler
+ * angles, and the position p_i: p_0 = 0, p_(i + 1) = p_i + R_i offset. Names in a copy end with `sep` and the number of
+ * the copy, with zeros in front up to equal length. Elements of other sections that refer to these names are copied to
+ * the end of their section, in MuJoCo's order. A <replicate> in another one is replaced first.
+ */
+#include "robots/expansion/mjcf_replicas.h"
+
+#include <string.h>
+
+#include "base/memory.h"
+#include "names/names.h"
+#include "robots/description/rigid_body.h"
+#include "robots/description/robot_file.h"
+#include "xml/lines.h"
+#include "xml/nodes.h"
+
+/* Copies of one element. With a <replicate> in another one it bounds the size of the tree. */
+enum { COUNT_LIMIT = 1000 };
+
+/* A <replicate> while it is replaced. */
+struct Replication {
+  struct Names *names; /* "kind name" of all elements in it, and of tendons that are copied for them */
+  const char *separator;
+  size_t count, digits;
+  struct Diagnostics *diagnostics;
+};
+
+/* Attributes that refer to elements, each with their kind. */
+static const char *const references[][2] = {
+    {"joint", "joint"},   {"joint1", "joint"}, {"joint2", "joint"},  {"jointinparent", "joint"}, {"site", "site"},
+    {"site1", "site"},    {"site2", "site"},   {"refsite", "site"},  {"cranksite", "site"},      {"slidersite", "site"},
+    {"sidesite", "site"}, {"body", "body"},    {"body1", "body"},    {"body2", "body"},          {"geom", "geom"},
+    {"geom1", "geom"},    {"geom2", "geom"},   {"tendon", "tendon"}, {"tendon1", "tendon"},      {"tendon2", "tendon"},
+};
+
+enum { REFERENCES = sizeof references / sizeof *references };
+
+static const char *kind_of(xmlNodePtr node) {
+  if (is_element(node, "freejoint")) return "joint";
+  return is_element(node, "fixed") || is_element(node, "spatial") ? "tendon" : (const char *)node->name;
+}
+
+static void note_name(struct Replication *replication, xmlNodePtr node) {
+  if (!has_attribute(node, "name")) return;
+  char *key = format_text("%s %s", kind_of(node), attribute(node, "name"));
+  names_set(replication->names, key, copy_text(key));
+}
+
+static void note_names(struct Replication *replication, xmlNodePtr parent) {
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE) continue;
+    note_name(replication, node);
+    note_names(replication, node);
+  }
+}
+
+/* Appends the suffix of a copy to an attribute. */
+static void add_suffix(const struct Replication *replication, xmlNodePtr node, const char *name, size_t copy) {
+  char *text = format_text("%s%s%0*zu", attribute(node, name), replication->separator, (int)replication->digits, copy);
+  xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)text);
+}
+
+static bool is_copied(const struct Replication *replication, xmlNodePtr node, size_t reference) {
+  char *name = attribute(node, references[reference][0]);
+  return name != NULL && names_find(replication->names, format_text("%s %s", references[reference][1], name)) != NULL;
+}
+
+/* Returns the number of references to copied elements in an element and its descendants. */
+static size_t count_references(const struct Replication *replication, xmlNodePtr node) {
+  size_t count = 0;
+  for (size_t i = 0; i < REFERENCES; i++) count += is_copied(replication, node, i);
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (child->type == XML_ELEMENT_NODE) count += count_references(replication, child);
+  return count;
+}
+
+static void rename_references(const struct Replication *replication, xmlNodePtr node, size_t copy) {
+  for (size_t i = 0; i < REFERENCES; i++)
+    if (is_copied(replication, node, i)) add_suffix(replication, node, references[i][0], copy);
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
+    if (child->type == XML_ELEMENT_NODE) rename_references(replication, child, copy);
+}
+
+static void rename_all(const struct Replication *replication, xmlNodePtr node, size_t copy) {
+  if (node->type != XML_ELEMENT_NODE) return;
+  if (has_attribute(node, "name")) add_suffix(replication, node, "name", copy);
+  for (xmlNodePtr child = node->children; child != NULL; child = child->next) rename_all(replication, child, copy);
+}
+
+static void set_lines(xmlNodePtr copy, xmlNodePtr original) {
+  set_line(copy, line_of(original));
+  for (xmlNodePtr a = copy->children, b = original->children; a != NULL && b != NULL; a = a->next, b = b->next)
+    if (a->type == XML_ELEMENT_NODE) set_lines(a, b);
+}
+
+static xmlNodePtr copy_of(xmlNodePtr node) {
+  xmlNodePtr copy = xmlDocCopyNode(node, node->doc, 1);
+  set_lines(copy, node);
+  return copy;
+}
+
+/* Reports an <equality> between a copied element and another one, which MuJoCo would omit. */
+static void check_equality(const struct Replication *replication, xmlNodePtr node) {
+  size_t count = 0, copied = count_references(replication, node);
+  for (size_t i = 0; i < REFERENCES; i++) count += has_attribute(node, references[i][0]);
+  if (copied < count)
+    report_error(replication->diagnostics, line_of(node),
+                 "a <%s> of <equality> is between an element of a <replicate> and another one; expected both in the "
+                 "<replicate>, or one <%s> for each copy",
+                 (const char *)node->name, (const char *)node->name);
+}
+
+/* Replaces elements of a section that refer to copied ones by copies at its end. */
+static void copy_references(struct Replication *replication, xmlNodePtr section) {
+  xmlNodePtr *found = NULL;
+  size_t count = 0;
+  for (xmlNodePtr node = section->children; node != NULL; node = node->next) {
+    if (node->type != XML_ELEMENT_NODE || count_references(replication, node) == 0) continue;
+    if (is_element(section, "equality")) check_equality(replication, node);
+    found = make_room(found, count, sizeof(xmlNodePtr));
+    found[count++] = node;
+  }
+  for (size_t copy = 0; copy < replication->count; copy++)
+    for (size_t i = 0; i < count; i++) {
+      xmlNodePtr node = copy_of(found[i]);
+      rename_references(replication, node, copy);
+      if (has_attribute(node, "name")) add_suffix(replication, node, "name", copy);
+      xmlAddChild(section, node);
+    }
+  for (size_t i = 0; i < count; i++) {
+    if (is_element(section, "tendon")) note_name(replication, found[i]);
+    xmlUnlinkNode(found[i]);
+    xmlFreeNode(found[i]);
+  }
+}
+
+static void set_numbers(xmlNodePtr node, const char *name, const double numbers[3]) {
+  char *text = format_text("%.17g %.17g %.17g", numbers[0], numbers[1], numbers[2]);
+  xmlNewProp(node, (const xmlChar *)name, (const xmlChar *)text);
+}
+
+/* Reads three numbers; 0 if the attribute is missing. Reports others. */
+static void read_three(const struct Replication *replication, xmlNodePtr node, const char *name, double values[3]) {
+  char *text = attribute(node, name);
+  if (text == NULL || parse_numbers(text, 3, values) == 3) return;
+  report_error(replication->diagnostics, line_of(node), "%s=\"%.60s\" of <replicate> is not valid; expected 3 numbers",
+               name, text);
+}
+
+/* Puts the copies of the content before the <replicate>, each in a frame. */
+static void copy_content(const struct Replication *replication, xmlNodePtr node, const struct EulerAngles *angles) {
+  double offset[3] = {0}, euler[3] = {0};
+  struct Placement placement = no_displacement;
+  read_three(replication, node, "offset", offset);
+  read_three(replication, node, "euler", euler);
+  for (size_t copy = 0; copy < replication->count; copy++) {
+    double multiple[3], rotation[3];
+    for (int i = 0; i < 3; i++) multiple[i] = (double)copy * euler[i];
+    for (int i = 0; i < 3; i++) rotation[i] = multiple[i] * angles->unit;
+    placement.rotation = rotation_of_euler(angles->sequence, rotation);
+    xmlNodePtr frame = xmlNewDocNode(node->doc, NULL, (const xmlChar *)"frame", NULL);
+    set_line(frame, line_of(node));
+    set_numbers(frame, "pos", placement.translation);
+    set_numbers(frame, "euler", multiple);
+    struct Placement step = no_displacement;
+    memcpy(step.translation, offset, sizeof offset);
+    placement = placement_within(&placement, &step);
+    for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
+      if (child->type != XML_ELEMENT_NODE) continue;
+      xmlNodePtr content = copy_of(child);
+      rename_all(replication, content, copy);
+      xmlAddChild(frame, content);
+    }
+    xmlAddPrevSibling(node, frame);
+  }
+}
+
+static void replace(xmlNodePtr root, xmlNodePtr node, const struct EulerAngles *angles,
+                    struct Diagnostics *diagnostics) {
+  static const char *const sections[] = {"tendon", "equality", "actuator", "contact"};
+  double count = 0;
+  char *text = attribute(node, "count"), *separator = attribute(node, "sep");
+  if (text == NULL || parse_numbers(text, 1, &count) != 1 || count < 1 || count > COUNT_LIMIT ||
+      count != (size_t)count) {
+    report_error(diagnostics, line_of(node), "count=\"%.60s\" of <replicate> is not valid; expected 1 to %d",
+                 text != NULL ? text : "", COUNT_LIMIT);
+    return;
+  }
+  struct Replication replication = {.names = names_create(),
+                                    .separator = separator != NULL ? separator : "",
+                                    .count = (size_t)count,
+                                    .diagnostics = diagnostics};
+  replication.digits = strlen(format_text("%zu", replication.count - 1));
+  note_names(&replication, node);
+  copy_content(&replication, node, angles);
+  for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
+    for (xmlNodePtr section = root->children; section != NULL; section = section->next)
+      if (is_element(section, sections[i])) copy_references(&replication, section);
+  xmlUnlinkNode(node);
+  xmlFreeNode(node);
+}
+
+/* Replaces the <replicate> elements in a parent, the innermost first. */
+static void replace_in(xmlNodePtr root, xmlNodePtr parent, const struct EulerAngles *angles,
+                       struct Diagnostics *diagnostics) {
+  for (xmlNodePtr node = parent->children, next; node != NULL; node = next) {
+    next = node->next;
+    if (node->type != XML_ELEMENT_NODE) continue;
+    replace_in(root, node, angles, diagnostics);
+    if (is_element(node, "replicate")) replace(root, node, angles, diagnostics);
+  }
+}
+
+void mjcf_replicate(xmlNodePtr root, const struct EulerAngles *angles, struct Diagnostics *diagnostics) {
+  for (xmlNodePtr node = root->children; node != NULL; node = node->next)
+    if (is_element(node, "worldbody")) replace_in(root, node, angles, diagnostics);
+}
