@@ -40,7 +40,7 @@ static const char usage[] =
     "  --robot WORD=VALUE\n"
     "                   an option for the file of a robot, as in an <include>: base=floating, ground=true, "
     "limits=stops,\n"
-    "                   friction=sticks, effort=limited, keyframe=NAME, tool=LINK\n"
+    "                   friction=sticks, effort=limited, keyframe=NAME, mocap=inputs, tool=LINK\n"
     "  --form FORM      the form of the code: statements or tables; by default by the system's size\n"
     "  --pull           adds inputs of a spring that pulls a body: its stiffness pull.of.BODY; its point on the body, "
     "in the\n"

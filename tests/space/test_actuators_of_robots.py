@@ -20,13 +20,17 @@ FILE = f"""<mujoco model="m"><option gravity="0 0 0"/><default><joint frictionlo
 </actuator>
 <equality><joint joint1="r" joint2="s" polycoef="0.1 0 0.3"/><joint name="stays" joint1="u" polycoef="0.2"/></equality>
 <keyframe><key name="full" act="0.5 -0.5" ctrl="3 4 1"/></keyframe></mujoco>"""
+# A body of 2 kg is welded to one that inputs move.
+LED = f"""<mujoco model="m"><worldbody><body name="goal" mocap="true" pos="0.3 0 0" euler="0 0 90"><geom size="1"/></body><body name="b">{BOX}</body></worldbody>
+<equality><weld name="tie" body1="goal" body2="b"/></equality></mujoco>"""
 SYSTEMS = {"Driven": "", "Rests": 'friction="sticks"', "Key": 'keyframe="full"'}
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
     texts = {name: f'<system name="{name}"><include file="m.xml" as="m" {word}/></system>' for name, word in SYSTEMS.items()}
-    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS})
+    texts["Led"] = '<system name="Led"><include file="led.xml" as="m" mocap="inputs" base="floating"/></system>'
+    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED})
 
 
 def test_a_filter(open_fmu):
@@ -77,3 +81,14 @@ def test_a_joint_that_stays(open_fmu):
     instance = open_fmu("Driven").initialize({"m.push_control": 7.0})
     instance.run(0.2, 0.1)
     assert instance.get("m.u", "m.stays.force") == pytest.approx([0.2, 7.0], abs=1e-10)
+
+
+def test_inputs_move_a_mocap_body(open_fmu):
+    """The welded body follows the inputs: 0.3 m behind the goal, around which it rotates. The force on the goal is -m (a + g)."""
+    instance = open_fmu("Led").initialize({"m.goal_x": 0.3, "m.goal_yaw": math.pi / 2, "der(m.goal_x)": 0.5, "der(der(m.goal_x))": 2.0, "der(m.goal_yaw)": 0.4, "der(der(m.goal_yaw))": 3.0})
+    assert instance.get("m.b_x", "m.b_y", "m.b_z") == pytest.approx([0, 0, 0], abs=1e-12)
+    assert instance.get("m.b_x_velocity", "m.b_y_velocity", "m.b_qz_velocity") == pytest.approx([0.5, -0.3 * 0.4, 0.2], abs=1e-10)
+    acceleration = [2.0 + 0.3 * 0.4**2, -0.3 * 3.0]
+    assert instance.get("der(m.b_x_velocity)", "der(m.b_y_velocity)") == pytest.approx(acceleration, abs=1e-9)
+    force = instance.get("m.tie_loop.forceX", "m.tie_loop.forceY", "m.tie_loop.forceZ")
+    assert math.hypot(*force) == pytest.approx(2 * math.hypot(*acceleration, 9.81), rel=1e-9)

@@ -265,6 +265,21 @@ COPIED = """\
 </mujoco>
 """
 
+# Springs by time constants, whose inertia is that of the joint while all others move freely.
+TIMED = """\
+<mujoco model="timed">
+  <compiler angle="radian" settotalmass="7"/>
+  <default><default class="slow"><joint springdamper="0.5 1.2" springref="0.1"/></default></default>
+  <worldbody>
+    <body name="base" pos="0 0 1" euler="0.3 0.2 0.1"><joint name="j" axis="0 1 0.3" ref="0.2" springdamper="0.2 0.7" armature="0.1" pos="0.1 0 0.2"/><geom size="0.1" mass="1" pos="0.3 0 0"/>
+      <frame pos="0.2 0.1 0"><body name="arm" pos="0.5 0 0"><joint name="h" axis="0 1 0" class="slow"/><joint name="s" type="slide" axis="1 0 0.2" ref="0.3" springdamper="0.3 2" damping="3" stiffness="5"/><geom type="box" size="0.1 0.2 0.3" mass="1" pos="0 0 0.3"/></body></frame>
+      <body name="head" pos="0 0 0.4"><joint name="ball" type="ball" pos="0 0.1 0" armature="0.02"/><geom type="box" size="0.1 0.2 0.3" pos="0.2 0 0"/></body>
+    </body>
+    <body name="drone" pos="1 2 3" euler="1 2 3"><freejoint/><geom type="box" size="0.1 0.2 0.1" pos="0.1 0 0"/><body name="tail" pos="0.3 0 0"><joint name="t" axis="1 2 0" springdamper="0.1 0.3"/><geom size="0.1" pos="0.2 0 0.1"/></body></body>
+  </worldbody>
+</mujoco>
+"""
+
 # Between two lengths the tendon's spring is slack.
 SLACK = """\
 <mujoco model="slack">
@@ -387,7 +402,7 @@ class Generator:
         )
 
 
-FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
+FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED, "Timed": TIMED} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -133,7 +133,7 @@ def test_names_in_other_alphabets(tmp_path):
 
 def test_a_mocap_body_stands_still(tmp_path):
     text = WHEEL.replace("<worldbody>", '<worldbody><body name="goal" mocap="true" pos="1 2 3"/><body mocap="true"/>')
-    message = f"mocap of <body>, which stands still, {UNREAD} a <freejoint>, or a frame that inputs move in a <system> that includes the robot"
+    message = f"mocap of <body>, which stands still, {UNREAD} mocap=\"inputs\" in an <include>, or --mocap inputs on the command line"
     assert warnings_of("wheel.xml", text, "", tmp_path) == [("3", message)]
 
 

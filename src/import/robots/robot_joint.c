@@ -268,6 +268,30 @@ static void write_ball(const struct Writer *writer, const struct RobotJoint *joi
   write_rotation_energy(writer, joint, "");
 }
 
+/* The inputs of a prescribed motion: a position, and rotations about fixed axes in the order x, y, z. */
+static const char *const prescribed[6] = {"x", "y", "z", "roll", "pitch", "yaw"};
+
+static void write_prescribed(const struct Writer *writer, const struct RobotJoint *joint) {
+  for (int i = 0; i < 6; i++) {
+    xmlNodePtr input = write_element(writer, "input");
+    set_attribute(input, "name", format_text("%s_%s", joint->symbol, prescribed[i]));
+    set_attribute(input, "unit", copy_text(i < 3 ? "m" : "rad"));
+    set_attribute(input, "derivatives", copy_text("2"));
+    set_number(input, "start", joint->start.position[i]);
+    set_attribute(input, "description", format_text("%s of the body '%s'", prescribed[i], joint->child->name));
+  }
+}
+
+static void write_prescribed_motion(const struct Writer *writer, xmlNodePtr frame, const struct RobotJoint *joint) {
+  xmlNodePtr translation = write_element_in(writer, frame, "translate");
+  for (int i = 0; i < 3; i++) set_attribute(translation, axes[i], format_text("%s_%s", joint->symbol, prescribed[i]));
+  for (int i = 2; i >= 0; i--) {
+    xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
+    set_attribute(rotation, "axis", copy_text(axes[i]));
+    set_attribute(rotation, "angle", format_text("%s_%s", joint->symbol, prescribed[3 + i]));
+  }
+}
+
 void write_joint(const struct Writer *writer, const struct RobotJoint *joint) {
   char *description = format_text("%s joint '%s' between '%s' and '%s'", joint_types[joint->type], joint->name,
                                   joint->parent->name, joint->child->name);
@@ -276,6 +300,7 @@ void write_joint(const struct Writer *writer, const struct RobotJoint *joint) {
   else if (joint->type == PLANAR) write_planar(writer, joint, description);
   else if (joint->type == FLOATING) write_free(writer, joint, &start, description);
   else if (joint->type == BALL) write_ball(writer, joint, &start, description);
+  else if (joint->type == PRESCRIBED) write_prescribed(writer, joint);
 }
 
 /* Writes a rotation about an axis: x, y or z if possible, which needs fewer operations. */
@@ -337,6 +362,7 @@ void write_motion(const struct Writer *writer, xmlNodePtr frame, const struct Ro
   if (joint->type == FLOATING) write_free_motion(writer, frame, joint->symbol);
   else if (joint->type == BALL) write_quaternion(writer, frame, joint->symbol);
   else if (joint->type == PLANAR) write_planar_motion(writer, frame, joint);
+  else if (joint->type == PRESCRIBED) write_prescribed_motion(writer, frame, joint);
   else if (joint_is_single(joint)) {
     char *position = joint_position(joint);
     if (joint_slides(joint)) write_slide(writer, frame, joint->axis, position);

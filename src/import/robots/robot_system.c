@@ -208,14 +208,15 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
 }
 
 /* Reports a robot without movable joints, or a floating one without mass. */
-static void check_motion(const struct Robot *robot, bool floats, bool is_mjcf, struct Diagnostics *diagnostics) {
+static void check_motion(const struct Robot *robot, bool floats, struct Diagnostics *diagnostics) {
   bool moves = floats;
-  for (size_t i = 0; i < robot->joint_count && !moves; i++) moves = joint_moves(robot->joints[i]);
+  for (size_t i = 0; i < robot->joint_count && !moves; i++)
+    moves = joint_moves(robot->joints[i]) && robot->joints[i]->type != PRESCRIBED;
   if (!moves)
-    report_error(diagnostics, robot->line,
-                 "no joint of the robot moves; expected one of another type than fixed, or %s",
-                 is_mjcf ? "a <freejoint> in a body"
-                         : "base=\"floating\" in an <include>, or --base floating on the command line");
+    report_error(
+        diagnostics, robot->line,
+        "no joint of the robot moves; expected one of another type than fixed, or base=\"floating\" in an <include>, "
+        "or --base floating on the command line");
   else if (floats && !robot->root->moves_inertia)
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
 }
@@ -313,14 +314,16 @@ static void check_ground_contact(const struct Robot *robot, const struct RobotOp
   }
 }
 
-xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *options, struct Diagnostics *diagnostics) {
+xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *given, struct Diagnostics *diagnostics) {
   int errors = diagnostics->errors;
   xmlNodePtr root = xmlDocGetRootElement(document);
   bool is_mjcf = is_element(root, "mujoco");
-  struct Robot *robot = is_mjcf ? mjcf_read(root, options, diagnostics) : urdf_read(root, options, diagnostics);
+  struct Robot *robot = is_mjcf ? mjcf_read(root, given, diagnostics) : urdf_read(root, given, diagnostics);
+  struct RobotOptions own = *given, *options = &own;
+  own.floats &= !is_mjcf; /* bodies of the world float, which itself is fixed */
   const struct RobotLink *end = NULL;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
-    check_motion(robot, options->floats, is_mjcf, diagnostics);
+    check_motion(robot, options->floats, diagnostics);
     check_ground_contact(robot, options, diagnostics);
     end = options->tool != NULL ? robot_link(robot, options->tool, "the tool", diagnostics) : only_end(robot);
   }

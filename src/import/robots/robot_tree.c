@@ -361,8 +361,8 @@ static void check_inertia(struct Connection *connection) {
   }
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct RobotJoint *joint = robot->joints[i];
-    if (!joint_moves(joint) || joint->is_mimicked || joint->leader != joint || joint->child->moves_inertia ||
-        joint->armature > 0)
+    if (!joint_moves(joint) || joint->type == PRESCRIBED || joint->is_mimicked || joint->leader != joint ||
+        joint->child->moves_inertia || joint->armature > 0)
       continue;
     report_error(connection->diagnostics, joint->line,
                  "the joint '%s' moves no inertia: neither the link '%s' nor a link behind it has a mass; expected an "

@@ -14,7 +14,7 @@
 #include "xml/nodes.h"
 
 const char *const joint_types[JOINT_TYPES] = {"fixed",    "revolute", "continuous", "prismatic",
-                                              "floating", "planar",   "ball"};
+                                              "floating", "planar",   "ball",       "prescribed"};
 
 /* Remedy for features of joints with several coordinates that cannot be converted. */
 static const char in_system[] = "a <force> in a <system> that includes the robot";

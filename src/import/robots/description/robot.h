@@ -6,7 +6,8 @@
 
 #include "robots/description/rigid_body.h"
 
-enum RobotJointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, JOINT_TYPES };
+/* PRESCRIBED: inputs move the child. */
+enum RobotJointType { FIXED, REVOLUTE, CONTINUOUS, PRISMATIC, FLOATING, PLANAR, BALL, PRESCRIBED, JOINT_TYPES };
 
 /* Geometry of a link for contacts or drawing, in the link's frame. type: as in <shape type="...">. */
 struct Collision {
@@ -42,7 +43,7 @@ struct RobotLink {
 
 /*
  * Start values of a joint's coordinates: one number; for FLOATING x, y, z and a quaternion; for BALL a quaternion in
- * the last four. The quaternion is 0 if the file gives none.
+ * the last four. The quaternion is 0 if the file gives none. For PRESCRIBED x, y, z, roll, pitch, yaw.
  */
 struct JointStart {
   double position[7], velocity[7];
@@ -58,8 +59,9 @@ struct RobotJoint {
   double axis[3];          /* unit vector in the child's frame */
   double lower, upper;     /* limits of the position; NAN for none */
   double damping, friction;
-  double armature;        /* inertia of the motor in terms of the coordinate */
-  double stiffness, rest; /* of a spring, and its unstressed position */
+  double armature;                     /* inertia of the motor in terms of the coordinate */
+  double stiffness, rest;              /* of a spring, and its unstressed position */
+  double time_constant, damping_ratio; /* of a spring and damper that are not yet known; 0 for none */
   struct JointStart start;
   bool has_motor;            /* has an input for its force or torque, in addition to the file's actuators */
   double effort;             /* largest force or torque of the motor; NAN for no limit */

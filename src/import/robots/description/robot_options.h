@@ -14,6 +14,7 @@ struct RobotOptions {
   bool has_ground;                            /* shapes of links touch a plane */
   bool says_ground, says_limits, says_effort; /* the <include> has these attributes, with any value */
   const char *ground_contact;                 /* names of these links, separated by blanks; NULL for all that move */
+  bool inputs_move_mocap;                     /* bodies with mocap follow inputs; else they stand still */
   bool is_effort_limited;                     /* motors are limited by their effort */
   const char *keyframe;                       /* name of the MJCF keyframe for start values; NULL for the default */
   const char *tool; /* link with outputs of its position and velocity; NULL for the only leaf */
@@ -28,6 +29,7 @@ enum RobotWord {
   EFFORT_WORD,
   GROUND_WORD,
   KEYFRAME_WORD,
+  MOCAP_WORD,
   ROBOT_WORDS
 };
 

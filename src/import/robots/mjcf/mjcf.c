@@ -24,6 +24,7 @@
 #include "robots/expansion/mjcf_includes.h"
 #include "robots/expansion/mjcf_replicas.h"
 #include "robots/mjcf/mjcf_keyframe.h"
+#include "robots/mjcf/mjcf_springs.h"
 #include "robots/mjcf/mjcf_tendons.h"
 #include "robots/mjcf/mjcf_tree.h"
 #include "robots/mjcf/mjcf_values.h"
@@ -105,7 +106,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *j
   joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
-  mjcf_reject(mjcf, node, "springdamper");
+  mjcf_note_spring(mjcf, node, joint);
   mjcf_limits(mjcf, node, "actuatorfrcrange", "actuatorfrclimited", joint->actuator_limits);
   mjcf_limits(mjcf, node, "range", "limited", limits);
   joint->lower = limits[0] * scale;
@@ -155,10 +156,6 @@ struct Chain {
   bool is_free, has_body;
 };
 
-static bool is_joint(xmlNodePtr node) {
-  return is_element(node, "joint") || is_element(node, "freejoint");
-}
-
 static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain, bool is_last) {
   static const char *const words[] = {"hinge", "slide", "ball", "free", NULL};
   static const enum RobotJointType types[] = {REVOLUTE, PRISMATIC, BALL, FLOATING};
@@ -187,13 +184,32 @@ static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain
 static void read_joints(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain) {
   xmlNodePtr last = NULL;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
-    if (is_joint(child)) last = child;
+    if (mjcf_is_joint(child)) last = child;
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
-    if (is_joint(child)) add_to_chain(mjcf, child, chain, child == last);
+    if (mjcf_is_joint(child)) add_to_chain(mjcf, child, chain, child == last);
   if (chain->is_free && chain->count > 1)
     report_error(mjcf->file.diagnostics, line_of(node),
                  "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
   if (!chain->has_body) mjcf_fix(mjcf, node, chain->parent, chain->body, &chain->placement);
+}
+
+/* Lets a body of the world move freely, as if it had a <freejoint>. */
+static void set_free(struct Mjcf *mjcf, xmlNodePtr node, const struct Chain *chain) {
+  struct RobotJoint *joint = mjcf_add_joint(mjcf, node, FLOATING, copy_text(chain->body), chain->parent, chain->body);
+  read_free(mjcf, joint, &chain->placement);
+}
+
+/* Lets inputs move a body, which start at its placement. */
+static void prescribe(struct Mjcf *mjcf, xmlNodePtr node, const struct Chain *chain) {
+  struct RobotJoint *joint = mjcf_add_joint(mjcf, node, PRESCRIBED, copy_text(chain->body), chain->parent, chain->body);
+  memcpy(joint->start.position, chain->placement.translation, sizeof chain->placement.translation);
+  placement_angles(&chain->placement, &joint->start.position[3]);
+}
+
+/* Removes the inertia of a body that inputs move, and its contacts with the ground. */
+static void release_mocap(struct RobotLink *link) {
+  link->body = (struct RigidBody){0};
+  for (size_t i = 0; i < link->collision_count; i++) link->collisions[i].is_clear = true;
 }
 
 static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const struct Placement *outer);
@@ -205,12 +221,16 @@ static void read_body(struct Mjcf *mjcf, xmlNodePtr node, char *parent, const st
   struct Chain chain = {.body = name, .parent = parent, .placement = placement_within(outer, &placement)};
   struct RobotLink *link = mjcf_add_link(mjcf, node, name);
   link->weightless = mjcf_number(mjcf, node, "gravcomp", 0);
-  if (attribute_is(node, "mocap", "true"))
+  bool is_mocap = attribute_is(node, "mocap", "true"), follows = is_mocap && mjcf->file.options->inputs_move_mocap;
+  if (is_mocap && !follows)
     warn_unread(&mjcf->file, line_of(node), "mocap of <body>, which stands still,",
-                "a <freejoint>, or a frame that inputs move in a <system> that includes the robot");
+                "mocap=\"inputs\" in an <include>, or --mocap inputs on the command line");
   mjcf_note_placement(mjcf, name, parent, &chain.placement);
-  read_joints(mjcf, node, &chain);
+  if (follows) prescribe(mjcf, node, &chain);
+  else if (!mjcf_has_joint(node) && mjcf_moves(mjcf, node)) set_free(mjcf, node, &chain);
+  else read_joints(mjcf, node, &chain);
   mjcf_read_body(mjcf, node, link);
+  if (follows) release_mocap(link);
   read_children(mjcf, node, name, &no_displacement);
 }
 
@@ -234,7 +254,7 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
       struct Placement inner = mjcf_placement(mjcf, child);
       inner = placement_within(outer, &inner);
       read_children(mjcf, child, parent, &inner);
-    } else if (is_joint(child) && !is_element(node, "body"))
+    } else if (mjcf_is_joint(child) && !is_element(node, "body"))
       report_error(mjcf->file.diagnostics, line_of(child), "a <%s> is in a <%s>; expected it in a <body>",
                    (const char *)child->name, (const char *)node->name);
   }
@@ -295,9 +315,6 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   if (robot->name == NULL || *robot->name == '\0') robot->name = copy_text("robot");
   robot->line = line_of(root);
   robot->gravity[2] = -9.81;
-  if (options->floats)
-    report_error(diagnostics, robot->line,
-                 "base=\"floating\" is for URDF; expected a <freejoint> in the body that moves");
   mjcf_insert_files(root, diagnostics);
   check_world(&mjcf);
   mjcf_check_classes(&mjcf, root);
@@ -314,6 +331,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "worldbody", false, read_world);
   set_total_mass(&mjcf);
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);
+  mjcf_set_springs(&mjcf);
   for_each(&mjcf, "actuator", true, mjcf_read_actuator);
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);

@@ -7,21 +7,9 @@
 #include "robots/mjcf/mjcf_tree.h"
 #include "xml/nodes.h"
 
-/* Returns the body of an element: the nearest <body> or <worldbody> outside of <frame>s. */
-static xmlNodePtr body_around(xmlNodePtr node) {
-  while (is_element(node->parent, "frame")) node = node->parent;
-  return node->parent;
-}
-
-static bool has_joint(xmlNodePtr body) {
-  xmlNodePtr node = body->children;
-  while (node != NULL && !is_element(node, "joint") && !is_element(node, "freejoint")) node = node->next;
-  return node != NULL;
-}
-
 /* Returns the nearest body with a joint, from this one outward; the <worldbody> if there is none. */
-static xmlNodePtr moving_body(xmlNodePtr body) {
-  while (!is_element(body, "worldbody") && !has_joint(body)) body = body_around(body);
+static xmlNodePtr moving_body(const struct Mjcf *mjcf, xmlNodePtr body) {
+  while (!is_element(body, "worldbody") && !mjcf_moves(mjcf, body)) body = mjcf_body_around(body);
   return body;
 }
 
@@ -46,10 +34,10 @@ void mjcf_read_rule(struct Mjcf *mjcf, xmlNodePtr node) {
 struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
   double friction[3] = {1};
   mjcf_numbers(mjcf, node, "friction", 1, 3, friction);
-  xmlNodePtr body = body_around(node);
+  xmlNodePtr body = mjcf_body_around(node);
   struct MjcfContact contact = {.node = node,
                                 .body = body,
-                                .moving = moving_body(body),
+                                .moving = moving_body(mjcf, body),
                                 .name = name_or_nothing(node),
                                 .body_name = name_or_nothing(body),
                                 .friction = friction[0],
@@ -146,7 +134,7 @@ static bool is_static(const struct MjcfContact *contact) {
 /* True if the carrier is the parent of the contact's body: these do not touch, unless the parent is static. */
 static bool is_carried(const struct Mjcf *mjcf, const struct MjcfContact *contact, const struct MjcfContact *carrier) {
   return !mjcf->touches_parents && !is_static(carrier) && !is_static(contact) &&
-         moving_body(body_around(contact->moving)) == carrier->moving;
+         moving_body(mjcf, mjcf_body_around(contact->moving)) == carrier->moving;
 }
 
 /* True if the two geoms can touch in MuJoCo. */

@@ -35,6 +35,27 @@ char *mjcf_site(const struct Mjcf *mjcf, char *name) {
   return mjcf_placement_of(mjcf, link) != NULL ? link : name;
 }
 
+xmlNodePtr mjcf_body_around(xmlNodePtr node) {
+  while (is_element(node->parent, "frame")) node = node->parent;
+  return node->parent;
+}
+
+bool mjcf_is_joint(xmlNodePtr node) {
+  return is_element(node, "joint") || is_element(node, "freejoint");
+}
+
+bool mjcf_has_joint(xmlNodePtr body) {
+  xmlNodePtr node = body->children;
+  while (node != NULL && !mjcf_is_joint(node)) node = node->next;
+  return node != NULL;
+}
+
+bool mjcf_moves(const struct Mjcf *mjcf, xmlNodePtr body) {
+  if (mjcf_has_joint(body)) return true;
+  return mjcf->file.options->floats && is_element(mjcf_body_around(body), "worldbody") &&
+         !attribute_is(body, "mocap", "true");
+}
+
 struct RobotJoint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum RobotJointType type, char *name,
                                   char *parent, char *child) {
   struct RobotJoint *joint = allocate(1, sizeof *joint);

@@ -18,6 +18,15 @@ char *mjcf_site_link(const struct Mjcf *mjcf, char *name);
 /* Returns the name of the link of a site to which an element refers; the name itself if there is none. */
 char *mjcf_site(const struct Mjcf *mjcf, char *name);
 
+/* Returns the body of an element: the nearest <body> or <worldbody> outside of <frame>s. */
+xmlNodePtr mjcf_body_around(xmlNodePtr node);
+
+bool mjcf_is_joint(xmlNodePtr node);
+bool mjcf_has_joint(xmlNodePtr body);
+
+/* True if a <body> moves in the one around it: it has a joint, or a free one by the options. */
+bool mjcf_moves(const struct Mjcf *mjcf, xmlNodePtr body);
+
 /* Adds a joint along z, without limits and friction. */
 struct RobotJoint *mjcf_add_joint(struct Mjcf *mjcf, xmlNodePtr node, enum RobotJointType type, char *name,
                                   char *parent, char *child);
