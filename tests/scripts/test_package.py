@@ -224,7 +224,7 @@ def test_options_for_robots(command, tmp_path):
     assert result.returncode == 1 and 'expected one of another type than fixed, or base="floating" in an <include>, or --base floating on the command line' in result.stderr
     assert succeed(command("check", "cube.urdf", "--base", "floating", cwd=tmp_path)).startswith("cube: 14 states, 0 inputs, ")
     for ground in (["--ground"], ["--feet", "cube"]):
-        assert ", 4 parameters" in succeed(command("check", "cube.urdf", "--base", "floating", *ground, "--limits", "stops", "--friction", "sticks", "--effort", "limited", cwd=tmp_path))
+        assert ", 4 parameters" in succeed(command("check", "cube.urdf", "--base", "floating", "--self", *ground, "--limits", "stops", "--friction", "sticks", "--effort", "limited", cwd=tmp_path))
     assert "there is no link 'cub' for the ground; did you mean 'cube'?" in command("check", "cube.urdf", "--base", "floating", "--feet", "cub", cwd=tmp_path).stderr
     succeed(command("check", "cube.xml", "--keyframe", "up", cwd=tmp_path))
     assert "there is no <key> 'down'" in command("check", "cube.xml", "--keyframe", "down", cwd=tmp_path).stderr

@@ -30,11 +30,25 @@ ROUGH = SLOPE.replace('friction="0.05"', "").replace('<contact>', '<contact><exc
 SYSTEM = '<system name="{}"><include file="slope.xml" as="r" ground="true"{}</system>'
 SET = '><parameter name="ground_friction" start="0.25"/></include>'
 SYSTEMS = {"Slope": SYSTEM.format("Slope", "/>"), "Rough": SYSTEM.format("Rough", "/>"), "Same": SYSTEM.format("Same", SET)}
+SYSTEMS["Touch"] = '<system name="Touch"><include file="touch.xml" as="r" self="true"/></system>'
+
+
+# Two spheres on each other on a table, a capsule across another one, and two spheres that touch nothing. One slides with a part on it.
+TOUCH = """<mujoco model="touch"><default><joint type="slide" axis="0 0 1"/></default><worldbody>
+<geom type="box" size="1 1 0.5" pos="0 0 -0.5"/><geom type="capsule" fromto="3 -1 0 3 1 0" size="0.1"/>
+<body name="one" pos="0 0 0.1"><joint name="one"/><geom size="0.1" mass="2"/></body>
+<body name="two" pos="0 0 0.3"><joint name="two"/><geom size="0.1" mass="3"/></body>
+<body name="rod" pos="3 0 0.2"><joint name="rod"/><geom type="capsule" fromto="-0.5 0 0 0.5 0 0" size="0.1" mass="1"/></body>
+<body name="excluded" pos="0.5 0 0.1"><joint name="excluded"/><geom size="0.1" mass="1"/></body>
+<body name="masked" pos="-0.5 0 0.1"><joint name="masked"/><geom size="0.1" mass="1" contype="2" conaffinity="2"/></body>
+<body name="skid" pos="0 0.6 0.1"><joint name="along" axis="1 0 0"/><joint name="skid"/><geom size="0.1" mass="1" friction="0.3" priority="1"/>
+<body name="fin" pos="0 0 0.1"><joint name="fin" type="hinge"/><geom size="0.08" mass="0.5" contype="4" conaffinity="1"/></body></body>
+</worldbody><contact><exclude body1="excluded" body2="world"/></contact></mujoco>"""
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    files = {"Slope/slope.xml": SLOPE, "Rough/slope.xml": ROUGH, "Same/slope.xml": SLOPE}
+    files = {"Slope/slope.xml": SLOPE, "Rough/slope.xml": ROUGH, "Same/slope.xml": SLOPE, "Touch/touch.xml": TOUCH}
     build_systems("contacts_of_mjcf", SYSTEMS, files=files)
 
 
@@ -73,6 +87,31 @@ def test_friction_and_masks(system, coefficients, open_fmu):
     slides(instance, coefficients)
 
 
+def test_shapes_of_one_file_touch_each_other(open_fmu):
+    """At rest each contact bears the weight above it. The sliding sphere stops after v^2/(2 mu g); those without contacts fall."""
+    instance = open_fmu("Touch").initialize({"r.along_velocity": 1.0}, tolerance=1e-9)
+    instance.run(3.0, 0.1)
+    expected = {"world_collision1_on_one_collision1": 5, "one_collision1_on_two_collision1": 3, "world_collision2_on_rod_collision1": 1, "world_collision1_on_skid_collision1": 1.5}
+    for name, mass in expected.items():
+        assert instance.get(f"r.{name}.force") == pytest.approx(mass * G, rel=1e-6), name
+    assert instance.get("r.along") == pytest.approx(1 / (2 * 0.3 * G), abs=2e-3)
+    assert instance.get("r.excluded", "r.masked") == pytest.approx([-G * 4.5, -G * 4.5], rel=1e-8)
+
+
+def test_shapes_of_a_urdf_touch_each_other(tmp_path):
+    """Links that a joint connects do not touch; other pairs of which one is a sphere, or both are capsules, do."""
+    link = '<link name="{0}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{1}</link>'
+    shape = '<collision><origin xyz="{0} 0 0"/><geometry>{1}</geometry></collision>'
+    ball, box = '<sphere radius="0.1"/>', '<box size="0.1 0.1 0.1"/>'
+    links = [link.format(name, "".join(shape.format(3 * i + j / 2, kind) for j, kind in enumerate(kinds))) for i, (name, kinds) in enumerate({"stand": [box, ball], "a": [ball], "b": [box], "c": [ball]}.items())]
+    joints = [f'<joint name="{one}{other}" type="{kind}"><parent link="{one}"/><child link="{other}"/><axis xyz="0 0 1"/></joint>' for one, other, kind in (("stand", "a", "continuous"), ("a", "b", "continuous"), ("b", "c", "fixed"))]
+    (tmp_path / "arm.urdf").write_text(f'<robot name="arm">{"".join(links + joints)}</robot>')
+    result = lagc("arm.urdf", "-o", "out", "--robot", "self=true", cwd=tmp_path)
+    assert result.returncode == 0 and "1 pair of shapes do not touch, such as the box of the link 'stand' and the box of 'b'; expected a sphere and another shape" in result.stderr
+    names = set(re.findall(r'name="(\w+_on_\w+)\.force"', (tmp_path / "out" / "modelDescription.xml").read_text()))
+    assert names == {"stand_collision2_on_b_collision1", "stand_collision1_on_c_collision1", "stand_collision2_on_c_collision1"}
+
+
 WORLD = """<mujoco><worldbody>
 <geom name="floor" type="plane" size="1 1 1"/>
 <geom name="wall" type="box" size="1 1 1" pos="3 0 0"/>
@@ -93,6 +132,7 @@ DISABLED = "nothing touches the ground: contact=\"disable\" of <flag>; remove it
         ("", "", "", {(2, STANDS), (3, STATIC), (4, BODIES)}),
         ('ground="true"', "", "", {(3, STATIC), (4, BODIES), (5, SPINS)}),
         ('ground="false"', "", "", set()),
+        ('ground="false" self="true"', "", "", {(5, SPINS)}),
         ("", "</worldbody>", '</worldbody><option><flag contact="disable"/></option>', set()),
         ('ground="true"', "</worldbody>", '</worldbody><option><flag contact="disable"/></option>', {(1, DISABLED)}),
         ("", "</worldbody>", '</worldbody><contact><exclude body1="c" body2="a"/></contact>', {(2, STANDS), (3, STATIC)}),

@@ -1,5 +1,6 @@
 """Accelerations of robots in MJCF at random states, against MuJoCo's for the same files, without contacts, limits and friction."""
 
+import re
 from ctypes import c_double
 
 import numpy as np
@@ -521,6 +522,55 @@ def check_accelerations(name, text, instance, digits, files=None):
 @pytest.mark.parametrize("name", FILES)
 def test_accelerations(name, open_fmu):
     check_accelerations(name, FILES[name], open_fmu(name, kind=FMU2Model), 1e-10)
+
+
+def touching(seed):
+    """A tree of bodies with spheres that all overlap, with random masks, pairs and exclusions, and the bodies' geoms that may touch."""
+    random = np.random.default_rng(seed)
+    geoms, count = {"world": []}, 0
+
+    def sphere(body):
+        nonlocal count
+        count += 1
+        kind, affinity = random.integers(0, 4, 2)
+        geoms[body].append((f"g{count}", kind or affinity))
+        return f'<geom name="g{count}" size="1" pos="{" ".join(map(str, random.uniform(-0.1, 0.1, 3)))}" contype="{kind}" conaffinity="{affinity}"/>'
+
+    def body(depth):
+        name = f"b{len(geoms)}"
+        geoms[name] = []
+        inside = ("<joint/>" if random.random() < 0.7 or depth == 0 else "") + sphere(name)
+        while len(geoms) < 7 and random.random() < 0.6:
+            inside += body(depth + 1)
+        return f'<body name="{name}">{inside}{sphere(name) if random.random() < 0.3 else ""}</body>'
+
+    world = sphere("world") + "".join(body(0) for _ in range(3))
+    bodies, names = list(geoms), [name for listed in geoms.values() for name, _ in listed]
+    excluded = {tuple(random.choice(bodies, 2, replace=False)) for _ in range(2)}
+    paired = {tuple(random.choice(names, 2, replace=False)) for _ in range(2)}
+    rules = "".join(f'<exclude body1="{a}" body2="{b}"/>' for a, b in excluded) + "".join(f'<pair geom1="{a}" geom2="{b}"/>' for a, b in paired)
+    filtered = random.choice(["enable", "disable"])
+    in_pairs = {name for pair in paired for name in pair}
+    return f'<mujoco><option><flag filterparent="{filtered}"/></option><worldbody>{world}</worldbody><contact>{rules}</contact></mujoco>', {
+        body: [name for name, touches in listed if touches or name in in_pairs] for body, listed in geoms.items()
+    }
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_pairs_that_touch(seed, tmp_path):
+    """All spheres overlap, so that MuJoCo has a contact for each pair that may touch."""
+    text, geoms = touching(seed)
+    reference = mujoco.MjModel.from_xml_string(text)
+    data = mujoco.MjData(reference)
+    mujoco.mj_forward(reference, data)
+    static = {i for i in range(reference.ngeom) if reference.body_weldid[reference.geom_bodyid[i]] == 0}
+    pairs = {frozenset(int(geom) for geom in contact.geom) for contact in data.contact}
+    expected = {frozenset(reference.geom(geom).name for geom in pair) for pair in pairs if not pair <= static}
+    (tmp_path / "touching.xml").write_text(text)
+    result = fmu.lagc("touching.xml", "-o", "out", "--robot", "self=true", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    found = re.findall(r'name="(\w+)_collision(\d+)_on_(\w+)_collision(\d+)\.force"', (tmp_path / "out" / "modelDescription.xml").read_text())
+    assert {frozenset((geoms[a][int(i) - 1], geoms[b][int(j) - 1])) for a, i, b, j in found} == expected
 
 
 def test_included_files(open_fmu):

@@ -28,9 +28,8 @@ static void place_element(xmlNodePtr shape, const struct Placement *placement) {
   }
 }
 
-/* Returns the coefficient of friction of a shape on the ground. */
-static double friction_of(const struct Collision *shape) {
-  return isnan(shape->friction) ? usual_friction : shape->friction;
+double shape_friction(double friction) {
+  return isnan(friction) ? usual_friction : friction;
 }
 
 /* True if the shape touches the ground, provided that its link moves. */
@@ -47,7 +46,7 @@ static double common_friction(const struct Robot *robot, const struct RobotOptio
     const struct RobotLink *link = robot->links[i];
     for (size_t j = 0; j < link->collision_count; j++) {
       if (!carrier_moves(link, options->floats) || !meets_ground(options, link, &link->collisions[j])) continue;
-      double friction = friction_of(&link->collisions[j]);
+      double friction = shape_friction(link->collisions[j].friction);
       if (!is_first && friction != common) return NAN;
       common = friction;
       is_first = false;
@@ -56,45 +55,53 @@ static double common_friction(const struct Robot *robot, const struct RobotOptio
   return common;
 }
 
-static void write_friction(struct Writer *writer, const struct Robot *robot) {
-  double common = common_friction(robot, writer->options);
-  writer->has_own_frictions = isnan(common);
-  write_parameter(writer, copy_text("ground_friction"), writer->has_own_frictions ? -1 : common, "1",
-                  copy_text(writer->has_own_frictions
-                                ? "coefficient of friction of all shapes; below 0, each has that of the file"
-                                : "coefficient of friction"));
-}
-
-void write_ground(struct Writer *writer, const struct Robot *robot) {
+void write_contact_parameters(const struct Writer *writer, const struct Robot *robot, const char *prefix,
+                              double friction) {
   double mass = 0.0;
   for (size_t i = 0; i < robot->link_count; i++) mass += robot->links[i]->body.mass;
   double gravity = robot_gravity(robot);
   double stiffness = fmax(mass, 1e-3) * (gravity > 0.0 ? gravity : usual_gravity) / sinking;
   if (stiffness > 1.0) stiffness = floor(stiffness);
-  writer->line = robot->line;
-  write_parameter(writer, copy_text("ground_stiffness"), stiffness, "N/m",
+  write_parameter(writer, format_text("%s_stiffness", prefix), stiffness, "N/m",
                   copy_text("force by depth at each point that touches"));
-  write_parameter(writer, copy_text("ground_damping"), usual_damping, "s/m",
+  write_parameter(writer, format_text("%s_damping", prefix), usual_damping, "s/m",
                   copy_text("by which the force grows with the speed"));
-  write_friction(writer, robot);
+  write_parameter(writer, format_text("%s_friction", prefix), isnan(friction) ? -1 : friction, "1",
+                  copy_text(isnan(friction)
+                                ? "coefficient of friction of all shapes; below 0, each has that of the file"
+                                : "coefficient of friction"));
+}
+
+void write_ground(struct Writer *writer, const struct Robot *robot) {
+  double friction = common_friction(robot, writer->options);
+  writer->has_own_frictions = isnan(friction);
+  writer->line = robot->line;
+  write_contact_parameters(writer, robot, ground, friction);
   xmlNodePtr plane = write_element(writer, "shape");
   set_attribute(plane, "name", copy_text(ground));
   set_attribute(plane, "type", copy_text("plane"));
   if (robot->ground != NULL) place_element(plane, &robot->ground->placement);
 }
 
-static void write_contact(const struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,
-                          const char *shape, size_t index) {
+void write_shape_contact(const struct Writer *writer, char *name, char *const shapes[2], const char *prefix,
+                         double friction) {
   xmlNodePtr contact = write_element(writer, "contact");
-  set_attribute(contact, "name", format_text("%s_%s%zu", link->symbol, ground, index));
-  set_attribute(contact, "between", copy_text(shape));
-  set_attribute(contact, "and", copy_text(ground));
-  set_attribute(contact, "stiffness", copy_text("ground_stiffness"));
-  set_attribute(contact, "damping", copy_text("ground_damping"));
+  set_attribute(contact, "name", name);
+  set_attribute(contact, "between", copy_text(shapes[0]));
+  set_attribute(contact, "and", copy_text(shapes[1]));
+  set_attribute(contact, "stiffness", format_text("%s_stiffness", prefix));
+  set_attribute(contact, "damping", format_text("%s_damping", prefix));
   set_attribute(contact, "friction",
-                writer->has_own_frictions
-                    ? format_text("if(ground_friction < 0, %s, ground_friction)", number(friction_of(collision)))
-                    : copy_text("ground_friction"));
+                isnan(friction)
+                    ? format_text("%s_friction", prefix)
+                    : format_text("if(%s_friction < 0, %s, %s_friction)", prefix, number(friction), prefix));
+}
+
+static void write_contact(const struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,
+                          char *shape, size_t index) {
+  write_shape_contact(writer, format_text("%s_%s%zu", link->symbol, ground, index),
+                      (char *const[]){shape, copy_text(ground)}, ground,
+                      writer->has_own_frictions ? shape_friction(collision->friction) : NAN);
 }
 
 static xmlNodePtr write_shape(struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,

@@ -3,6 +3,17 @@
 
 #include "robots/robot_elements.h"
 
+/* Returns a coefficient of friction, or the usual one if it is NAN. */
+double shape_friction(double friction);
+
+/* Writes PREFIX_stiffness, PREFIX_damping and PREFIX_friction. friction: NAN where contacts differ. */
+void write_contact_parameters(const struct Writer *writer, const struct Robot *robot, const char *prefix,
+                              double friction);
+
+/* Writes a compliant contact with these parameters. friction: its own coefficient; NAN for that of the parameter. */
+void write_shape_contact(const struct Writer *writer, char *name, char *const shapes[2], const char *prefix,
+                         double friction);
+
 /* Writes the plane z = 0, or that of the file, and the parameters of contacts with it. */
 void write_ground(struct Writer *writer, const struct Robot *robot);
 

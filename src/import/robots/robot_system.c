@@ -27,6 +27,7 @@
 #include "robots/mjcf/mjcf.h"
 #include "robots/robot_elements.h"
 #include "robots/robot_joint.h"
+#include "robots/robot_pairs.h"
 #include "robots/robot_shapes.h"
 #include "robots/robot_tendon.h"
 #include "robots/robot_transmission.h"
@@ -179,6 +180,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   write_friction_parameters(writer, robot);
   if (writer->options->has_ground) write_ground(writer, robot);
   for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
+  write_pairs(writer, robot);
   for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_balance(writer, robot, link);
   for (size_t i = 0; i < robot->tendon_count; i++) {
     writer->line = robot->tendons[i].line;
@@ -200,7 +202,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   if (end != NULL) write_tool(writer, end);
   writer->line = robot->line;
   /* no part of such a robot is stiff, so that an explicit method suffices */
-  if (!has_losses(robot, writer->options) && !writer->options->has_ground)
+  if (!has_losses(robot, writer->options) && !writer->options->has_ground && robot->pair_count == 0)
     set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
   xmlNodePtr experiment = write_element(writer, "experiment");
   set_attribute(experiment, "stopTime", number(1));
@@ -330,6 +332,7 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *given, 
   if (diagnostics->errors == errors) {
     check_limits(robot, options, diagnostics);
     check_rims(robot, options, diagnostics);
+    if (!is_mjcf) find_pairs(robot, options, diagnostics);
   }
   xmlFreeDoc(document);
   document = NULL;

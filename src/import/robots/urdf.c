@@ -399,7 +399,7 @@ static const struct {
     {"mu_dynamic", ACTS_ON_GROUND, "ground_friction of the robot"},
     {"lateral_friction", ACTS_ON_GROUND, "ground_friction of the robot"},
     {"contact_coefficients", ACTS_ON_GROUND, "ground_friction of the robot"},
-    {"selfCollide", ACTS_ON_GROUND, "a <contact between=\"...\" and=\"...\"> in a <system> that includes the robot"},
+    {"selfCollide", ACTS_BETWEEN_LINKS, "self=\"true\" in an <include>"},
 };
 
 static void check_simulators(struct RobotFile *urdf, xmlNodePtr node) {

@@ -14,6 +14,7 @@ def add_robot(parser):
     options.add_argument("--base", choices=("fixed", "floating"), help="the root link of a URDF, or bodies of an MJCF without joints, are fixed or move freely; default: fixed")
     options.add_argument("--ground", action="store_true", help="the shapes of all links touch the ground")
     options.add_argument("--feet", metavar="LINK,...", help="the shapes of these links touch the ground")
+    options.add_argument("--self", action="store_true", help="shapes of links touch each other, and static shapes of the file")
     options.add_argument("--limits", choices=("outputs", "stops"), help="limits of joints are outputs, or stops; default: outputs")
     options.add_argument("--friction", choices=("creeps", "sticks"), help="friction of joints is smooth, or dry; default: creeps")
     options.add_argument("--effort", choices=("unlimited", "limited"), help="motors are unlimited, or limited by the effort of the file; default: unlimited")
@@ -25,6 +26,7 @@ def add_robot(parser):
 def robot_of(arguments):
     """Return the options of add_robot() that are given, as a dict."""
     given = {word: getattr(arguments, word) for word in ("base", "limits", "friction", "effort", "keyframe", "mocap", "tool")}
+    given["self"] = arguments.self or None
     given["ground"] = arguments.feet.replace(",", " ") if arguments.feet else arguments.ground or None
     return {word: value for word, value in given.items() if value is not None}
 

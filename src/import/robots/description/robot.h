@@ -162,6 +162,14 @@ struct RobotLoop {
   bool is_fixed;
 };
 
+/* Two shapes that touch each other: collisions of links by their indices. friction: NAN if the file gives none. */
+struct ShapePair {
+  struct RobotLink *links[2];
+  size_t indices[2];
+  double friction;
+  long line;
+};
+
 /* A robot. After robot_connect() its links form a tree. */
 struct Robot {
   char *name;
@@ -172,6 +180,8 @@ struct Robot {
   struct Actuator *actuators;
   struct RobotLoop *loops;
   struct Coupling *couplings;
+  struct ShapePair *pairs;
+  size_t pair_count;
   size_t link_count, joint_count, tendon_count, actuator_count, loop_count, coupling_count;
   double gravity[3];        /* m/s2 */
   struct Collision *ground; /* plane of the ground, normal to its z axis; NULL for z = 0 */

@@ -132,7 +132,8 @@ static bool is_among(const char *names, const char *name) {
 
 bool condition_holds(const struct RobotOptions *options, enum Condition condition) {
   return condition == ALWAYS_ACTS || (condition == ACTS_ON_GROUND && options->has_ground) ||
-         (condition == ACTS_AT_STOPS && options->has_stops);
+         (condition == ACTS_AT_STOPS && options->has_stops) ||
+         (condition == ACTS_BETWEEN_LINKS && options->has_ground && !options->has_self);
 }
 
 static void check_attribute(struct RobotFile *file, xmlNodePtr node, const char *name, const struct Attributes *table) {

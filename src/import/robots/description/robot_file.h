@@ -45,7 +45,7 @@ void warn_unread(struct RobotFile *file, long line, const char *what, const char
 bool requests_nothing(const char *text);
 
 /* When an attribute influences the motion: always, with a ground, or with stops. */
-enum Condition { ALWAYS_ACTS, ACTS_ON_GROUND, ACTS_AT_STOPS };
+enum Condition { ALWAYS_ACTS, ACTS_ON_GROUND, ACTS_AT_STOPS, ACTS_BETWEEN_LINKS };
 
 /* True if an attribute with this condition influences the motion under these options. */
 bool condition_holds(const struct RobotOptions *options, enum Condition condition);

@@ -16,6 +16,7 @@ static const struct {
     [GROUND_WORD] = {"ground", {NULL}},
     [KEYFRAME_WORD] = {"keyframe", {NULL}},
     [MOCAP_WORD] = {"mocap", {"still", "inputs"}},
+    [SELF_WORD] = {"self", {"false", "true"}},
 };
 
 const char *robot_word(size_t index) {
@@ -37,6 +38,7 @@ struct RobotOptions robot_options_of(const char *const texts[ROBOT_WORDS]) {
                                .says_limits = texts[LIMITS_WORD] != NULL,
                                .says_effort = texts[EFFORT_WORD] != NULL,
                                .ground_contact = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
+                               .has_self = says(texts[SELF_WORD], "true"),
                                .inputs_move_mocap = says(texts[MOCAP_WORD], "inputs"),
                                .keyframe = texts[KEYFRAME_WORD],
                                .tool = texts[TOOL_WORD]};
@@ -65,7 +67,7 @@ bool robot_options_parse(const char *const *given, size_t count, struct RobotOpt
     report_error(diagnostics, 0, "'%s' is not an option for robots; expected %s", given[i],
                  values != NULL
                      ? format_text("%s=%s or %s=%s", words[word].name, values[0], words[word].name, values[1])
-                     : "base, tool, limits, friction, effort, ground, keyframe or mocap, with = and a value");
+                     : "base, tool, limits, friction, effort, ground, keyframe, mocap or self, with = and a value");
     return false;
   }
   *options = robot_options_of(texts);

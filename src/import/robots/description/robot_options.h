@@ -12,6 +12,7 @@ struct RobotOptions {
   bool has_stops;                             /* limits are stops; else outputs report violations */
   bool sticks;                                /* joint friction is dry; else it is regularized and allows creep */
   bool has_ground;                            /* shapes of links touch a plane */
+  bool has_self;                              /* shapes of links touch each other and static ones */
   bool says_ground, says_limits, says_effort; /* the <include> has these attributes, with any value */
   const char *ground_contact;                 /* names of these links, separated by blanks; NULL for all that move */
   bool inputs_move_mocap;                     /* bodies with mocap follow inputs; else they stand still */
@@ -30,6 +31,7 @@ enum RobotWord {
   GROUND_WORD,
   KEYFRAME_WORD,
   MOCAP_WORD,
+  SELF_WORD,
   ROBOT_WORDS
 };
 

@@ -336,7 +336,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
   if (diagnostics->errors == errors) {
-    mjcf_check_contacts(&mjcf);
+    mjcf_find_contacts(&mjcf);
     mjcf_check_attributes(&mjcf);
   }
   leave_out_others(&mjcf.file, root, known);

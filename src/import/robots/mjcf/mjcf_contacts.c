@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "robots/description/shape_pairs.h"
 #include "robots/mjcf/mjcf_tree.h"
 #include "xml/nodes.h"
 
@@ -98,6 +99,27 @@ static struct MjcfContact combined(const struct MjcfContact *first, const struct
   return contact;
 }
 
+/* Returns the friction and dimensions of two geoms, or those of their <pair>. */
+static struct MjcfContact meeting(struct Mjcf *mjcf, const struct MjcfContact *first,
+                                  const struct MjcfContact *second) {
+  const struct ContactRule *pair = find_pair(mjcf, first, second);
+  struct MjcfContact contact = combined(first, second);
+  if (pair == NULL) return contact;
+  double friction[5] = {contact.friction};
+  mjcf_numbers(mjcf, pair->node, "friction", 1, 5, friction);
+  contact.friction = friction[0];
+  contact.dimensions = mjcf_number(mjcf, pair->node, "condim", contact.dimensions);
+  return contact;
+}
+
+static void warn_of_spin(struct Mjcf *mjcf, long line, double dimensions) {
+  if (dimensions > 3)
+    warn_unread(
+        &mjcf->file, line,
+        format_text("the torsional%s friction of condim=\"%g\"", dimensions == 6 ? " and rolling" : "", dimensions),
+        "condim=\"3\", or a <force> against the spin in a <system> that includes the robot");
+}
+
 /* Sets the contact of a shape with the file's plane, or by its own attributes if there is no plane. */
 static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Collision *shape) {
   const struct MjcfContact *ground = mjcf->ground.node != NULL ? &mjcf->ground : NULL;
@@ -106,25 +128,19 @@ static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Co
   shape->is_clear = mjcf->has_no_contacts;
   if (ground != NULL && pair == NULL)
     shape->is_clear |= !masks_meet(ground, &contact) || is_excluded(mjcf, ground, &contact);
-  if (ground != NULL) contact = combined(ground, &contact);
-  if (pair != NULL) {
-    double friction[5] = {contact.friction};
-    mjcf_numbers(mjcf, pair->node, "friction", 1, 5, friction);
-    contact.friction = friction[0];
-    contact.dimensions = mjcf_number(mjcf, pair->node, "condim", contact.dimensions);
-  }
+  if (ground != NULL) contact = meeting(mjcf, ground, &contact);
   shape->friction = contact.dimensions == 1 ? 0 : contact.friction;
-  if (contact.dimensions > 3 && !shape->is_clear)
-    warn_unread(&mjcf->file, line,
-                format_text("the torsional%s friction of condim=\"%g\"", contact.dimensions == 6 ? " and rolling" : "",
-                            contact.dimensions),
-                "condim=\"3\", or a <force> against the spin in a <system> that includes the robot");
+  if (!shape->is_clear) warn_of_spin(mjcf, line, contact.dimensions);
 }
 
-void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct Collision *shape) {
+void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link,
+                      struct Collision *shape) {
   if (mjcf->file.options->has_ground) meet_ground(mjcf, *contact, shape);
   mjcf->contacts = make_room(mjcf->contacts, mjcf->contact_count, sizeof *mjcf->contacts);
-  mjcf->contacts[mjcf->contact_count++] = *contact;
+  struct MjcfContact *known = &mjcf->contacts[mjcf->contact_count++];
+  *known = *contact;
+  known->link = link;
+  known->index = link->collision_count;
 }
 
 static bool is_static(const struct MjcfContact *contact) {
@@ -155,12 +171,28 @@ static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, con
                          size_t count) {
   const char *others = count > 1 ? format_text(", and %zu other such pair%s", count - 1, count > 2 ? "s" : "") : "";
   report_warning(mjcf->file.diagnostics, line_of(first->node),
-                 "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected a <contact between=\"...\" "
-                 "and=\"...\"> of shapes that may meet, in a <system> that includes the robot",
-                 name_of(first->node), name_of(first->body), name_of(second->node), name_of(second->body), others);
+                 "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected %s", name_of(first->node),
+                 name_of(first->body), name_of(second->node), name_of(second->body), others,
+                 mjcf->file.options->has_self ? "a sphere and another shape, or two capsules"
+                                              : "self=\"true\" in an <include>, or --self on the command line");
 }
 
-/* Warns of pairs that can touch: static and moving geoms, or two moving ones. */
+/* Adds the contact of two geoms if the options request it. Returns false if there is none, or none is possible. */
+static bool add_contact(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
+  if (!mjcf->file.options->has_self ||
+      !shapes_can_touch(&first->link->collisions[first->index], &second->link->collisions[second->index]))
+    return false;
+  struct MjcfContact contact = meeting(mjcf, first, second);
+  struct ShapePair pair = {.links = {first->link, second->link},
+                           .indices = {first->index, second->index},
+                           .friction = contact.dimensions == 1 ? 0 : contact.friction,
+                           .line = line_of(first->node)};
+  add_shape_pair(mjcf->file.robot, &pair);
+  warn_of_spin(mjcf, line_of(first->dimensions > second->dimensions ? first->node : second->node), contact.dimensions);
+  return true;
+}
+
+/* Adds or warns of pairs that can touch: static and moving geoms, or two moving ones. */
 static void check_pairs(struct Mjcf *mjcf, bool with_static) {
   const struct MjcfContact *found[2] = {NULL};
   size_t count = 0;
@@ -169,7 +201,7 @@ static void check_pairs(struct Mjcf *mjcf, bool with_static) {
       const struct MjcfContact *first = &mjcf->contacts[i], *second = &mjcf->contacts[j];
       bool is_wanted =
           with_static ? is_static(first) && !is_static(second) : i < j && !is_static(first) && !is_static(second);
-      if (!is_wanted || !may_meet(mjcf, first, second)) continue;
+      if (!is_wanted || !may_meet(mjcf, first, second) || add_contact(mjcf, first, second)) continue;
       if (count++ > 0) continue;
       found[0] = first;
       found[1] = second;
@@ -190,12 +222,12 @@ static void check_ground(struct Mjcf *mjcf) {
         name_of(mjcf->ground.node));
 }
 
-void mjcf_check_contacts(struct Mjcf *mjcf) {
+void mjcf_find_contacts(struct Mjcf *mjcf) {
   const struct RobotOptions *options = mjcf->file.options;
   if (mjcf->has_no_contacts && options->has_ground)
     report_warning(mjcf->file.diagnostics, mjcf->file.robot->line,
                    "nothing touches the ground: contact=\"disable\" of <flag>; remove it");
-  if (mjcf->has_no_contacts || (options->says_ground && !options->has_ground)) return;
+  if (mjcf->has_no_contacts || (options->says_ground && !options->has_ground && !options->has_self)) return;
   check_ground(mjcf);
   check_pairs(mjcf, true);
   check_pairs(mjcf, false);

@@ -1,4 +1,4 @@
-/* Contacts of geoms with the ground, and their friction, by MuJoCo's rules; warnings of other contacts. */
+/* Contacts of geoms with the ground and with each other, and their friction, by MuJoCo's rules. */
 #pragma once
 
 #include "robots/mjcf/mjcf_values.h"
@@ -12,8 +12,12 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node);
 /* True if the geom can touch any other one, by its masks or a <pair>. */
 bool mjcf_may_collide(const struct Mjcf *mjcf, const struct MjcfContact *contact);
 
-/* Records the geom and sets its friction on the ground; called after the geoms of the <worldbody> are read. */
-void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct Collision *shape);
+/*
+ * Records the geom, which becomes the next collision of the link, and sets its friction on the ground. Called after the
+ * geoms of the <worldbody> are read.
+ */
+void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link,
+                      struct Collision *shape);
 
-/* Warns of contacts that exist in MuJoCo only, once all geoms are read. */
-void mjcf_check_contacts(struct Mjcf *mjcf);
+/* Adds contacts between geoms, if the options request them, and warns of others that exist in MuJoCo only. */
+void mjcf_find_contacts(struct Mjcf *mjcf);

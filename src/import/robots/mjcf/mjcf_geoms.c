@@ -188,7 +188,7 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
   if (problem != NULL) return;
   struct Collision shape = shape_of(geom, line_of(node));
   shape.color = read_color(mjcf, node);
-  if (touches) mjcf_set_contact(mjcf, &contact, &shape);
+  if (touches) mjcf_set_contact(mjcf, &contact, link, &shape);
   struct Collision **shapes = touches ? &link->collisions : &link->visuals;
   size_t *count = touches ? &link->collision_count : &link->visual_count;
   *shapes = make_room(*shapes, *count, sizeof **shapes);

@@ -16,7 +16,9 @@ enum InertiaFromGeoms { WHERE_MISSING, ALWAYS, NEVER };
 struct MjcfContact {
   xmlNodePtr node, body, moving; /* geom, or NULL; its body; nearest body with a joint, else <worldbody> */
   char *name, *body_name;        /* "" for none */
-  double friction;               /* coefficient of sliding friction */
+  struct RobotLink *link;        /* has the geom among its collisions, at the index */
+  size_t index;
+  double friction;   /* coefficient of sliding friction */
   double dimensions; /* condim: 1 without friction, 3 with sliding friction, 4 also torsional, 6 also rolling */
   double priority;
   unsigned type, affinity; /* bit masks: two geoms touch if one's type and the other's affinity have a common bit */
