@@ -179,6 +179,17 @@ def test_a_robot(ready, tmp_path):
     assert ready.calls()[-1] == "python scripts/commands/run.py build/own/fmu/arm_6.fmu elbow=1"
 
 
+@pytest.mark.parametrize("name", ["arm 6", "腕", "é1-b", "𝄞_"])
+def test_names_of_robots(name, tmp_path):
+    """CMake finds the name that lagc gives to the robot."""
+    link = "<link name='a'><inertial><mass value='1'/><inertia ixx='1' iyy='1' izz='1' ixy='0' ixz='0' iyz='0'/></inertial></link>"
+    (tmp_path / "arm.urdf").write_text(f'<robot name="{name}">{link}</robot>')
+    assert fmu.lagc("arm.urdf", "-o", "out", "--robot", "base=floating", cwd=tmp_path).returncode == 0
+    [expected] = re.findall('modelName="([^"]*)"', (tmp_path / "out" / "modelDescription.xml").read_text())
+    found = subprocess.run([sys.executable, ROOT / "scripts" / "package" / "robot_symbol.py", name], capture_output=True, text=True)
+    assert found.stdout == f"{expected}\n"
+
+
 @pytest.mark.parametrize("command", ["run", "live"])
 def test_options_for_a_robot(command, ready, tmp_path):
     """They may stand anywhere, and reach lagc by CMake; pages get them for the variant whose bodies can be pulled."""
