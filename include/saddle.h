@@ -23,9 +23,15 @@
 #define SADDLE_MASS(elements, n, constraints) (2 * (elements) + 1 + 2 * (n) + (constraints) * ((constraints) + 1) / 2)
 #define SADDLE_RIGHT_SIDE(n) (4 * (n))
 
+/* Numbers of constraints among those of rows of K, which are positive for rows of M. */
+enum {
+  SADDLE_CONSTRAINT = -1,
+  SADDLE_NORM = -2 /* norm of a quaternion: its force moves nothing, and has no part in the norm of forces */
+};
+
 /*
  * Replaces K by L (below the diagonal) and D (on it). coordinate: positive numbers for rows of M, negative ones for
- * constraints. A constraint may depend on those before it, or its row may be 0, as that of an open contact. It gets
+ * constraints, see above. A constraint may depend on those before it, or its row may be 0, as that of an open contact. It gets
  * the pivot -INFINITY, so that its force is 0. Returns 0, or 1 + the first row in which M is not positive definite.
  */
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
@@ -81,7 +87,10 @@ static inline Condition saddle_is_weak(size_t elements, const Real *m) {
  */
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x);
 
-/* Computes an orthogonal basis of the null space of J^T, and stores it after the factors. saddle_factor() calls it. */
+/*
+ * Computes a basis of the null space of J^T, orthogonal without the forces of quaternion norms, and stores it after the
+ * factors. saddle_factor() calls it.
+ */
 void saddle_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 
 /*

@@ -69,7 +69,7 @@ static const struct BlockTable *blocks_of(const struct Program *program) {
     *table = (struct BlockTable){.count = block->count,
                                  .first_mass = looped->first_mass,
                                  .first_right_side = looped->first_right_side,
-                                 .coordinate = block_numbers_of(block, program->equations->count).items};
+                                 .coordinate = block_numbers_of(block, program->model).items};
     if (!block_is_full(block)) {
       table->start = block->start;
       table->column = block->column;

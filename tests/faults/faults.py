@@ -296,6 +296,7 @@ PLANS = [
     # Redundant constraints, coordinates without inertia, inputs in constraints, tables of two arguments
     ("for (size_t k = 0; k < c; k++) force[k] -= share * null_vector[k];", "", pytest("test_redundant", "random_states")),
     ("null_vector[c] = WHERE(follows, 1.0 / length, 0.0);", "null_vector[c] = WHERE(follows, 1.0, 0.0);", pytest("test_redundant", "random_states")),
+    ("coordinate[row] == SADDLE_NORM ? REAL(0.0) : forces[row];", "forces[row];", pytest("test_forces_of_least_norm", "Central")),
     ("any |= program->expressions->constraints_along[k] != ZERO;", "any |= false;",
      pytest("test_redundant", "directional")),
     ("if (along[k] == ZERO) continue;", "if (true) continue;", pytest("test_redundant", "directional")),

@@ -23,6 +23,7 @@ struct Variable {
   Node shown;            /* of a definition: its expression on the page, with functions in place of pieces; else ZERO */
   Node rate;             /* of a <state>: its time derivative, which may contain accelerations and constraint forces */
   char *force_name;      /* of a constraint: name of its force if that is not NAME.force; else NULL */
+  bool is_norm;          /* of a constraint: the norm of a quaternion, whose force moves nothing */
   bool is_of_velocities; /* of a constraint: its force times the constraint is a power, not an energy */
   Node force_share; /* of a joint's constraint: the share of its force that has this name; ZERO for the whole force */
   bool is_fixed;    /* of a coordinate: constraints change neither its start value nor that of its velocity */

@@ -149,10 +149,10 @@ static void write_pivot(FILE *file, const struct InertiaBlock *block, size_t row
  * Writes the factorization K = L D L^T of a small block, unrolled. It calls saddle_factor() if a pivot of a constraint
  * is doubtful. The elements are arguments, as vector loads of elements that were just stored would stall.
  */
-static void write_small_factor(FILE *file, const struct InertiaBlock *block, size_t coordinates, size_t number) {
+static void write_small_factor(FILE *file, const struct InertiaBlock *block, const struct Model *model, size_t number) {
   size_t n = block->count, elements = block->start[n];
   const size_t *start = block->start, *column = block->column;
-  struct BlockNumbers numbers = block_numbers_of(block, coordinates);
+  struct BlockNumbers numbers = block_numbers_of(block, model);
   fprintf(file, "static size_t factor%zu(Real *mass", number);
   for (size_t k = 0; k < elements; k++) fprintf(file, ", Real k%zu", k);
   fputs(") {\n  Real weakest = REAL(1.0);\n", file);
@@ -200,10 +200,10 @@ static void write_blocks(FILE *file, const struct Program *program) {
       write_sizes(file, "size_t", format_text("start%zu", i), block->start, block->count + 1);
       write_sizes(file, "size_t", format_text("column%zu", i), block->column, block->start[block->count]);
     }
-    struct BlockNumbers numbers = block_numbers_of(block, program->equations->count);
+    struct BlockNumbers numbers = block_numbers_of(block, program->model);
     write_array(file, format_text("coordinate%zu", i), &int_elements, numbers.items, numbers.count);
     if (!program_solves_by_statements(program, i)) continue;
-    write_small_factor(file, block, program->equations->count, i);
+    write_small_factor(file, block, program->model, i);
     write_small_solve(file, block, i);
   }
 }

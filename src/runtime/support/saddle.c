@@ -9,6 +9,9 @@
  * If nothing remains, up to rounding, the constraint is redundant: its pivot becomes infinite, and its force 0. For
  * such a row i, L^-T e_i holds forces z with J^T z = 0. Orthogonalized, they are a basis of the null space of J^T.
  * Subtracting from the forces their parts along the basis gives those of least Euclidean norm with the same J^T F.
+ *
+ * The force of a quaternion's norm takes that part of other forces that would only stretch the quaternion. It depends
+ * on the choice of the frame, so that it has no part in z; restore_load() sets it.
  */
 #include "saddle.h"
 
@@ -90,9 +93,9 @@ static void subtract_component(size_t c, const Real *null_vector, Real *force) {
 }
 
 /*
- * Computes the null-space vector of constraint c, in row i, if it is redundant: L^-T e_i, orthogonalized twice against
- * those before it because of rounding. It has an element for each constraint up to c. The element of c is 1 and is not
- * stored; its slot holds 1 / |vector|^2, or 0 if there is no vector.
+ * Computes the null-space vector of constraint c, in row i, if it is redundant: L^-T e_i without the forces of norms.
+ * It is orthogonalized against those before it, twice because of rounding. It has an element for each constraint up to
+ * c. The element of c is 1 and is not stored; its slot holds 1 / |vector|^2, or 0 if there is no vector.
  */
 static void find_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
                              size_t i, size_t c) {
@@ -102,7 +105,7 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
   if (!ANYWHERE(follows)) return;
   combine(start, column, m, i, forces);
   for (size_t row = 0, k = 0; row < i; row++)
-    if (coordinate[row] < 0) null_vector[k++] = forces[row];
+    if (coordinate[row] < 0) null_vector[k++] = coordinate[row] == SADDLE_NORM ? REAL(0.0) : forces[row];
   null_vector[c] = REAL(1.0);
   for (size_t j = 0; j < 2 * c; j++) subtract_component(j % c, m + slot_of_null_vector(n, start, j % c), null_vector);
   for (size_t k = 0; k < c; k++) length += null_vector[k] * null_vector[k];

@@ -10,6 +10,7 @@ struct BlockNumbers {
 };
 
 /*
- * Returns the numbers of a block's rows: 1 + index of coordinates, -1 - index of constraints; see also nonsymmetric.h.
+ * Returns the numbers of a block's rows: 1 + index of coordinates, and those of saddle.h for constraints; see also
+ * nonsymmetric.h.
  */
-struct BlockNumbers block_numbers_of(const struct InertiaBlock *block, size_t coordinates);
+struct BlockNumbers block_numbers_of(const struct InertiaBlock *block, const struct Model *model);

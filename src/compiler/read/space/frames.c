@@ -63,6 +63,7 @@ void declare_frame(struct Reader *reader, xmlNodePtr node) {
                           .description = format_text("norm of the quaternion of %s", name),
                           .unit = copy_text("1"),
                           .dimension = dimension_one,
+                          .is_norm = true,
                           .line = scope_line(reader->scope, line_of(rotation))};
   reader->present->number = reader->model->constraints.count;
   append_variable(&reader->model->constraints, norm);
