@@ -94,6 +94,7 @@ CASES = [
     ("motor between sites", 15, '<actuator><motor site="upper" refsite="lower"/></actuator>', 15, f'refsite="lower" of <motor> {UNKNOWN}'),
     ("copies without number", 11, '<geom size="0.1"/><replicate/>', 11, 'count="" of <replicate> is not valid; expected 1 to 1000'),
     ("part of a copy", 11, '<geom size="0.1"/><replicate count="1.5"/>', 11, 'count="1.5" of <replicate> is not valid'),
+    ("copies without end", 11, '<geom size="0.1"/><replicate count="1000"><replicate count="1000"><replicate count="1000"><geom size="0.1"/></replicate></replicate></replicate>', 11, "more than 20000 elements are copied by <replicate>; expected fewer"),
     ("offset of copies", 11, '<geom size="0.1"/><replicate count="2" offset="1"/>', 11, 'offset="1" of <replicate> is not valid; expected 3 numbers'),
     ("equality of a copy and another", 15, '<worldbody><replicate count="2"><body name="x"><joint name="j"/><geom size="1"/></body></replicate></worldbody><equality><joint joint1="j" joint2="elbow"/></equality>', 15, "a <joint> of <equality> is between an element of a <replicate> and another one; expected both in the <replicate>"),
     ("copies of one name", 15, '<worldbody><replicate count="2"><body name="x"><joint name="j"/><geom size="1"/></body></replicate><body name="x1"/></worldbody>', 15, "the link 'x1' is already defined on line 15"),

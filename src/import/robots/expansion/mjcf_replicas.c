@@ -6,6 +6,7 @@
  */
 #include "robots/expansion/mjcf_replicas.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -15,8 +16,16 @@
 #include "xml/lines.h"
 #include "xml/nodes.h"
 
-/* Copies of one element. With a <replicate> in another one it bounds the size of the tree. */
-enum { COUNT_LIMIT = 1000 };
+/* Copies of one element, and of all elements of a file together; larger files could not be simulated. */
+enum { COUNT_LIMIT = 1000, ELEMENTS_LIMIT = 20000 };
+
+/* A file whose <replicate> elements are replaced. */
+struct Expansion {
+  xmlNodePtr root;
+  const struct EulerAngles *angles;
+  struct Diagnostics *diagnostics;
+  size_t copied; /* elements */
+};
 
 /* A <replicate> while it is replaced. */
 struct Replication {
@@ -176,43 +185,61 @@ static void copy_content(const struct Replication *replication, xmlNodePtr node,
   }
 }
 
-static void replace(xmlNodePtr root, xmlNodePtr node, const struct EulerAngles *angles,
-                    struct Diagnostics *diagnostics) {
-  static const char *const sections[] = {"tendon", "equality", "actuator", "contact"};
+/* Returns the number of elements in another one. */
+static size_t count_elements(xmlNodePtr parent) {
+  size_t count = 0;
+  for (xmlNodePtr node = parent->children; node != NULL; node = node->next)
+    if (node->type == XML_ELEMENT_NODE) count += 1 + count_elements(node);
+  return count;
+}
+
+/* Reads the number of copies. Returns 0 after reporting a wrong one. */
+static size_t read_count(struct Expansion *expansion, xmlNodePtr node) {
   double count = 0;
-  char *text = attribute(node, "count"), *separator = attribute(node, "sep");
-  if (text == NULL || parse_numbers(text, 1, &count) != 1 || count < 1 || count > COUNT_LIMIT ||
-      count != (size_t)count) {
-    report_error(diagnostics, line_of(node), "count=\"%.60s\" of <replicate> is not valid; expected 1 to %d",
+  char *text = attribute(node, "count");
+  bool is_number = text != NULL && parse_numbers(text, 1, &count) == 1;
+  if (!is_number || count < 1 || count > COUNT_LIMIT || count != floor(count)) {
+    report_error(expansion->diagnostics, line_of(node), "count=\"%.60s\" of <replicate> is not valid; expected 1 to %d",
                  text != NULL ? text : "", COUNT_LIMIT);
-    return;
+    return 0;
   }
+  expansion->copied += (size_t)count * count_elements(node);
+  if (expansion->copied <= ELEMENTS_LIMIT) return (size_t)count;
+  report_error(expansion->diagnostics, line_of(node), "more than %d elements are copied by <replicate>; expected fewer",
+               ELEMENTS_LIMIT);
+  return 0;
+}
+
+static void replace(struct Expansion *expansion, xmlNodePtr node) {
+  static const char *const sections[] = {"tendon", "equality", "actuator", "contact"};
+  char *separator = attribute(node, "sep");
   struct Replication replication = {.names = names_create(),
                                     .separator = separator != NULL ? separator : "",
-                                    .count = (size_t)count,
-                                    .diagnostics = diagnostics};
+                                    .count = read_count(expansion, node),
+                                    .diagnostics = expansion->diagnostics};
+  if (replication.count == 0) return;
   replication.digits = strlen(format_text("%zu", replication.count - 1));
   note_names(&replication, node);
-  copy_content(&replication, node, angles);
+  copy_content(&replication, node, expansion->angles);
   for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
-    for (xmlNodePtr section = root->children; section != NULL; section = section->next)
+    for (xmlNodePtr section = expansion->root->children; section != NULL; section = section->next)
       if (is_element(section, sections[i])) copy_references(&replication, section);
   xmlUnlinkNode(node);
   xmlFreeNode(node);
 }
 
 /* Replaces the <replicate> elements in a parent, the innermost first. */
-static void replace_in(xmlNodePtr root, xmlNodePtr parent, const struct EulerAngles *angles,
-                       struct Diagnostics *diagnostics) {
+static void replace_in(struct Expansion *expansion, xmlNodePtr parent) {
   for (xmlNodePtr node = parent->children, next; node != NULL; node = next) {
     next = node->next;
     if (node->type != XML_ELEMENT_NODE) continue;
-    replace_in(root, node, angles, diagnostics);
-    if (is_element(node, "replicate")) replace(root, node, angles, diagnostics);
+    replace_in(expansion, node);
+    if (is_element(node, "replicate")) replace(expansion, node);
   }
 }
 
 void mjcf_replicate(xmlNodePtr root, const struct EulerAngles *angles, struct Diagnostics *diagnostics) {
+  struct Expansion expansion = {root, angles, diagnostics, 0};
   for (xmlNodePtr node = root->children; node != NULL; node = node->next)
-    if (is_element(node, "worldbody")) replace_in(root, node, angles, diagnostics);
+    if (is_element(node, "worldbody")) replace_in(&expansion, node);
 }
