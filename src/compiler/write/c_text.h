@@ -18,7 +18,7 @@ enum ValueType {
   VALUE_ARRAY /* a pointer to one */
 };
 
-/* A field of a struct. Its `names` are for VALUE_NAME, what follows them for VALUE_ARRAY. */
+/* A field of a struct. Its `names` are for VALUE_NAME, what follows them for VALUE_ARRAY; its `size` for others. */
 struct Field {
   const char *name; /* as in an initializer, such as steps.tolerance */
   size_t offset, size;
@@ -47,11 +47,16 @@ struct ElementType {
       const char *: VALUE_TEXT,                                                                                        \
       size_t *: VALUE_PAIR)
 
-/* Initialize a struct Field: a value, one of an enum with these names, an array. Initialize a struct ElementType by a list of them. */
-#define MEMBER(table, member)                                                                                          \
-  .name = #member, .offset = offsetof(struct table, member), .size = sizeof(((struct table *)0)->member)
+/*
+ * Initialize a struct Field: a value, the value of an enum with these names, and an array. STRUCT_TYPE initializes a
+ * struct ElementType by a list of them.
+ */
+#define MEMBER(table, member) .name = #member, .offset = offsetof(struct table, member)
 #define FIELD(table, member)                                                                                           \
-  { MEMBER(table, member), .type = TYPE_OF_VALUE(((struct table *)0)->member) }
+  {                                                                                                                    \
+    MEMBER(table, member), .size = sizeof(((struct table *)0)->member),                                                \
+                           .type = TYPE_OF_VALUE(((struct table *)0)->member)                                          \
+  }
 #define NAMED_FIELD(table, member, texts)                                                                              \
   { MEMBER(table, member), .type = VALUE_NAME, .names = (texts) }
 #define ARRAY_FIELD(table, member, length, definition, content)                                                        \
