@@ -20,8 +20,7 @@ void append_shape(struct Drawing *drawing, enum Look look, bool is_filled, const
                   size_t count) {
   struct PictureShape shape = {look, is_filled, allocate(count, sizeof *points), count};
   for (size_t i = 0; i < count; i++) shape.points[i] = points[i];
-  drawing->shapes = make_room(drawing->shapes, drawing->count, sizeof *drawing->shapes);
-  drawing->shapes[drawing->count++] = shape;
+  APPEND(drawing->shapes, drawing->count, shape);
 }
 
 void append_line(struct Drawing *drawing, enum Look look, struct PicturePoint from, struct PicturePoint to) {
@@ -29,8 +28,7 @@ void append_line(struct Drawing *drawing, enum Look look, struct PicturePoint fr
 }
 
 void append_label(struct Drawing *drawing, const char *text, struct PicturePoint point) {
-  drawing->labels = make_room(drawing->labels, drawing->label_count, sizeof *drawing->labels);
-  drawing->labels[drawing->label_count++] = (struct PictureLabel){text, point};
+  APPEND(drawing->labels, drawing->label_count, (struct PictureLabel){text, point});
 }
 
 struct Rectangle rectangle_of(const struct Drawing *drawing) {

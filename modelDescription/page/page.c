@@ -23,8 +23,7 @@ void page_heading(struct Page *page, const char *heading) {
     fprintf(page->lines, "heading\t%s\n", heading);
     return;
   }
-  page->headings = make_room(page->headings, page->heading_count, sizeof *page->headings);
-  page->headings[page->heading_count++] = heading;
+  APPEND(page->headings, page->heading_count, heading);
   xmlTextWriterStartElement(page->writer, BAD_CAST "h2");
   xmlTextWriterWriteFormatAttribute(page->writer, BAD_CAST "id", "section%zu", page->heading_count);
   xmlTextWriterWriteString(page->writer, BAD_CAST heading);

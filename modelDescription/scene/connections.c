@@ -114,8 +114,7 @@ static void try_rod(struct Connections *connections, const struct SampledPositio
   struct Rod rod = {.from = from, .to = to};
   if (!moves(samples, from) && !moves(samples, to)) return;
   if (!is_rod(samples, 2, &rod) && !is_rod(samples, 1, &rod)) return;
-  connections->rods = make_room(connections->rods, connections->rod_count, sizeof *connections->rods);
-  connections->rods[connections->rod_count++] = rod;
+  APPEND(connections->rods, connections->rod_count, rod);
 }
 
 /*
@@ -181,8 +180,7 @@ bool find_joint(const struct SampledPositions *samples, struct SceneJoint *joint
 static void try_joint(struct Connections *connections, const struct SampledPositions *samples, size_t of, size_t with) {
   struct SceneJoint joint = {.of = of, .with = with};
   if (!find_joint(samples, &joint)) return;
-  connections->joints = make_room(connections->joints, connections->joint_count, sizeof *connections->joints);
-  connections->joints[connections->joint_count++] = joint;
+  APPEND(connections->joints, connections->joint_count, joint);
 }
 
 /* True if the pair is tested. Objects in a frame are connected only with that. */

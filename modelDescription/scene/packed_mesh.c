@@ -79,8 +79,7 @@ struct NumberList {
 
 static void append_number(struct NumberList *numbers, uint64_t number) {
   for (int shift = 0; shift < 16; shift += 8) {
-    numbers->bytes = make_room(numbers->bytes, numbers->length, 1);
-    numbers->bytes[numbers->length++] = (unsigned char)(number >> shift & 0xff);
+    APPEND(numbers->bytes, numbers->length, (unsigned char)(number >> shift & 0xff));
   }
 }
 

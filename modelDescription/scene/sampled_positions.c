@@ -28,8 +28,7 @@ static void append_object(struct SampledPositions *samples, struct SceneObject o
   for (int axis = 0; axis < 3 && object.name != NULL; axis++)
     if (!is_free || body->has_position[axis])
       object.position[axis] = is_free ? body->position[axis].node : component(samples->model, object.name, axes[axis]);
-  samples->objects = make_room(samples->objects, samples->object_count, sizeof *samples->objects);
-  samples->objects[samples->object_count++] = object;
+  APPEND(samples->objects, samples->object_count, object);
 }
 
 /* Returns the index of the object of a frame, which may be a body; 0 for the base. */
@@ -65,8 +64,7 @@ static void find_constraints(struct SampledPositions *samples) {
   const struct VariableList *all = &samples->model->constraints;
   for (size_t i = 0; i < all->count && samples->constraint_count <= MOST_CONSTRAINTS; i++) {
     if (!holds_positions(samples->model, i)) continue;
-    samples->constraints = make_room(samples->constraints, samples->constraint_count, sizeof *samples->constraints);
-    samples->constraints[samples->constraint_count++] = i;
+    APPEND(samples->constraints, samples->constraint_count, i);
   }
   if (samples->constraint_count > MOST_CONSTRAINTS) samples->constraint_count = 0;
 }

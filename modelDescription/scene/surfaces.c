@@ -11,8 +11,7 @@ static double norm(const double vector[3]) {
 }
 
 static void append(struct Surfaces *surfaces, struct SceneSurface surface) {
-  surfaces->items = make_room(surfaces->items, surfaces->count, sizeof *surfaces->items);
-  surfaces->items[surfaces->count++] = surface;
+  APPEND(surfaces->items, surfaces->count, surface);
 }
 
 /* True if gap = normal . position + offset for all samples; sets the plane. */

@@ -81,8 +81,7 @@ static size_t length_of_part(const char *text) {
 static void append_point(struct Arguments *arguments, const char *text) {
   while (*text != '\0') {
     size_t length = length_of_part(text);
-    arguments->point = make_room(arguments->point, arguments->point_count, sizeof *arguments->point);
-    arguments->point[arguments->point_count++] = format_text("%.*s", (int)length, text);
+    APPEND(arguments->point, arguments->point_count, format_text("%.*s", (int)length, text));
     text += length + (text[length] == ',');
   }
 }

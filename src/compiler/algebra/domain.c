@@ -24,8 +24,7 @@ const char *domain_text(enum Operation operation) {
 void require_domain(struct Requirements *requirements, const struct Graph *graph, enum Operation operation,
                     Node argument, long line) {
   if (graph_is_constant(graph, argument) || functions[operation].domain.kind == EVERYWHERE) return;
-  requirements->items = make_room(requirements->items, requirements->count, sizeof *requirements->items);
-  requirements->items[requirements->count++] = (struct Requirement){operation, argument, line};
+  APPEND(requirements->items, requirements->count, (struct Requirement){operation, argument, line});
 }
 
 void warn_outside_domains(const struct Requirements *requirements, const struct Graph *graph, const double *values,

@@ -5,8 +5,7 @@
 #include "base/memory.h"
 
 void append_node(struct NodeList *list, Node node) {
-  list->nodes = make_room(list->nodes, list->count, sizeof *list->nodes);
-  list->nodes[list->count++] = node;
+  APPEND(list->nodes, list->count, node);
 }
 
 void append_nodes(struct NodeList *list, const Node *nodes, size_t count) {

@@ -34,8 +34,7 @@ long note_line(const struct Diagnostics *diagnostics, long line) {
   if (noted == NULL || line <= 0 || strcmp(diagnostics->file, noted->own) == 0) return line;
   for (size_t i = noted->count; i > 0 && noted->count - i < RECENT_LINES; i--)
     if (noted->items[i - 1].file == diagnostics->file && noted->items[i - 1].line == line) return -(long)i;
-  noted->items = make_room(noted->items, noted->count, sizeof *noted->items);
-  noted->items[noted->count++] = (struct FileLine){diagnostics->file, diagnostics->origin, line};
+  APPEND(noted->items, noted->count, (struct FileLine){diagnostics->file, diagnostics->origin, line});
   return -(long)noted->count;
 }
 

@@ -29,6 +29,10 @@ void release_all(void);
  */
 void *make_room(void *items, size_t count, size_t size);
 
+/* Appends an item to such a list. */
+#define APPEND(items, count, ...)                                                                                      \
+  ((items) = make_room(items, count, sizeof *(items)), (items)[(count)++] = (__VA_ARGS__))
+
 /* A string while it is written. */
 struct TextStream {
   FILE *file;

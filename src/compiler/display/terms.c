@@ -52,8 +52,7 @@ void add_to_terms(struct Atoms *atoms, struct Terms *terms, const struct Term *t
     atoms->is_full = true;
     return;
   }
-  terms->items = make_room(terms->items, terms->count, sizeof *terms->items);
-  terms->items[terms->count++] = *term;
+  APPEND(terms->items, terms->count, *term);
 }
 
 static struct Terms single_term(struct Atoms *atoms, double coefficient) {

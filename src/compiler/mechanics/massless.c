@@ -202,11 +202,9 @@ static void append_regularizations(const struct Matrices *matrices, struct Model
   for (size_t j = 0; j < model->constraints.count; j++) {
     if (!matrices->is_regularized[j]) continue;
     Node inertia = harmonic_inertia(matrices, j, inertias);
-    model->mechanism.regularizations =
-        make_room(model->mechanism.regularizations, model->mechanism.regularization_count,
-                  sizeof *model->mechanism.regularizations);
-    model->mechanism.regularizations[model->mechanism.regularization_count++] = (struct Regularization){
-        model->constraints.items[j].node, scale(graph, 1.0 / square_of_row(matrices, j, at_start), inertia)};
+    APPEND(model->mechanism.regularizations, model->mechanism.regularization_count,
+           (struct Regularization){model->constraints.items[j].node,
+                                   scale(graph, 1.0 / square_of_row(matrices, j, at_start), inertia)});
   }
 }
 

@@ -32,8 +32,7 @@ static Node append_resting(struct Model *model, const char *name, struct Resting
   struct Switches *switches = &model->switches;
   int index = (int)(switches->first + switches->mode_count++);
   resting.mode = graph_symbol(model->graph, MODE, index, format_text("%s.moves", name));
-  switches->resting = make_room(switches->resting, switches->resting_count, sizeof *switches->resting);
-  switches->resting[switches->resting_count++] = resting;
+  APPEND(switches->resting, switches->resting_count, resting);
   return resting.mode;
 }
 

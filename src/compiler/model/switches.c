@@ -4,18 +4,15 @@
 #include "base/memory.h"
 
 void append_branch(struct Switches *switches, struct Branch branch) {
-  switches->branches = make_room(switches->branches, switches->branch_count, sizeof *switches->branches);
-  switches->branches[switches->branch_count++] = branch;
+  APPEND(switches->branches, switches->branch_count, branch);
 }
 
 void append_remainder(struct Switches *switches, struct Remainder remainder) {
-  switches->remainders = make_room(switches->remainders, switches->remainder_count, sizeof *switches->remainders);
-  switches->remainders[switches->remainder_count++] = remainder;
+  APPEND(switches->remainders, switches->remainder_count, remainder);
 }
 
 void append_ball(struct Switches *switches, struct BallContact ball) {
-  switches->balls = make_room(switches->balls, switches->ball_count, sizeof *switches->balls);
-  switches->balls[switches->ball_count++] = ball;
+  APPEND(switches->balls, switches->ball_count, ball);
 }
 
 const struct Branch *branch_with_mode(const struct Switches *switches, Node mode) {

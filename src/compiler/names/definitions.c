@@ -42,8 +42,7 @@ void definitions_add(struct Definitions *definitions, char *name, const struct N
 }
 
 void definitions_push(struct Definitions *definitions, size_t number) {
-  definitions->stack = make_room(definitions->stack, definitions->stack_count, sizeof *definitions->stack);
-  definitions->stack[definitions->stack_count++] = number;
+  APPEND(definitions->stack, definitions->stack_count, number);
 }
 
 bool definitions_wait_for(struct Definitions *definitions, const char *name) {

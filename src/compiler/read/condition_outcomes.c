@@ -127,12 +127,10 @@ static void append_atom(struct Analysis *analysis, Node node, Node indicator) {
          !is_on_line(&form, &analysis->lines[atom.line].form, &atom.factor, &atom.zero))
     atom.line++;
   if (atom.line == analysis->line_count) {
-    analysis->lines = make_room(analysis->lines, analysis->line_count, sizeof *analysis->lines);
-    analysis->lines[analysis->line_count++] = (struct Line){.form = form, .u = indicator};
+    APPEND(analysis->lines, analysis->line_count, (struct Line){.form = form, .u = indicator});
     atom.factor = 1.0;
   }
-  analysis->atoms = make_room(analysis->atoms, analysis->atom_count, sizeof *analysis->atoms);
-  analysis->atoms[analysis->atom_count++] = atom;
+  APPEND(analysis->atoms, analysis->atom_count, atom);
 }
 
 /* How a node occurs in the condition: its sign alone counts, or its value. */

@@ -75,8 +75,7 @@ static void find_breaks(struct LineScan *scan, char quote, struct AttributeLines
   size_t offset = 0;
   for (; scan->next < scan->end && *scan->next != quote; pass(scan)) {
     if (*scan->next == '\n') {
-      lines->breaks = make_room(lines->breaks, lines->break_count, sizeof *lines->breaks);
-      lines->breaks[lines->break_count++] = offset;
+      APPEND(lines->breaks, lines->break_count, offset);
     } else if (*scan->next == '&') pass_to(scan, ";");
     if (scan->next == scan->end) break;
     bool continues = ((unsigned char)*scan->next & 0xC0u) == 0x80u, is_in_break = begins(scan, "\r\n");

@@ -150,8 +150,7 @@ static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Robot
     }
     return;
   }
-  link->collisions = make_room(link->collisions, link->collision_count, sizeof *link->collisions);
-  link->collisions[link->collision_count++] = collision;
+  APPEND(link->collisions, link->collision_count, collision);
 }
 
 /* True if the attribute has this number of numbers. They must not be negative unless may_be_negative. */
@@ -220,8 +219,7 @@ static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct RobotLin
   }
   note_mesh_problem(urdf, problem);
   if (!is_right) leave_out(urdf, "visual");
-  link->visuals = make_room(link->visuals, link->visual_count, sizeof *link->visuals);
-  if (is_right) link->visuals[link->visual_count++] = visual;
+  if (is_right) APPEND(link->visuals, link->visual_count, visual);
   return is_right;
 }
 

@@ -78,8 +78,7 @@ static void append_products(struct ProductSharing *sharing, const bool *is_term,
     product.decides = decides[product.node];
     if (product.count < 0) continue;
     if (product.decides) sharing->deciding_count += (size_t)product.count;
-    sharing->products = make_room(sharing->products, sharing->product_count, sizeof product);
-    sharing->products[sharing->product_count++] = product;
+    APPEND(sharing->products, sharing->product_count, product);
   }
 }
 
@@ -110,8 +109,7 @@ static struct FactorPair *pairs_of(const struct ProductSharing *sharing, size_t 
     for (int i = 0; i < product->count && product->decides; i++)
       for (int j = i; j < product->count; j++)
         for (int times = times_of(&product->factors[i], &product->factors[j]); times > 0; times--) {
-          pairs = make_room(pairs, *count, sizeof *pairs);
-          pairs[(*count)++] = (struct FactorPair){product->factors[i].base, product->factors[j].base};
+          APPEND(pairs, *count, (struct FactorPair){product->factors[i].base, product->factors[j].base});
         }
   }
   graph_work(sharing->graph, *count);
@@ -169,8 +167,7 @@ static void replace_pairs(struct ProductSharing *sharing) {
   struct FactorPair pair;
   while (graph_limit(sharing->graph) == NULL && find_most_frequent(sharing, &pair)) {
     Node base = sharing->first_pair + (Node)sharing->pair_count;
-    sharing->pairs = make_room(sharing->pairs, sharing->pair_count, sizeof pair);
-    sharing->pairs[sharing->pair_count++] = pair;
+    APPEND(sharing->pairs, sharing->pair_count, pair);
     for (size_t i = 0; i < sharing->product_count; i++) replace_pair(&sharing->products[i], pair, base);
   }
 }

@@ -44,8 +44,7 @@ static size_t index_in_link(const struct TreeLink *link, size_t coordinate) {
 }
 
 static void append_row(struct TreeLink *link, size_t row) {
-  link->coordinates = make_room(link->coordinates, link->count, sizeof *link->coordinates);
-  link->coordinates[link->count++] = row;
+  APPEND(link->coordinates, link->count, row);
 }
 
 /* Appends the coordinates on whose velocities a vector depends. */
@@ -99,9 +98,8 @@ static size_t append_link(struct TreeBuilder *builder, size_t parent, const stru
     if (builder->link_of[coordinate] != NO_LINK) builder->is_elsewhere[coordinate] = true;
     builder->link_of[coordinate] = trees->count;
   }
-  trees->items = make_room(trees->items, trees->count, sizeof *trees->items);
-  trees->items[trees->count] = link;
-  return trees->count++;
+  APPEND(trees->items, trees->count, link);
+  return trees->count - 1;
 }
 
 static void create_links_of_frames(struct TreeBuilder *builder) {

@@ -93,8 +93,7 @@ struct IrFunction *ir_create(void) {
 }
 
 static void append(struct IrFunction *ir, struct Instruction instruction) {
-  ir->instructions = make_room(ir->instructions, ir->count, sizeof *ir->instructions);
-  ir->instructions[ir->count++] = instruction;
+  APPEND(ir->instructions, ir->count, instruction);
   ir->operation_count += metadata[instruction.opcode].operations;
   if (opcode_has_result(instruction.opcode)) ir->spaces |= 1u << space_of(instruction.result);
   for (int i = 0; i < opcode_arity(instruction.opcode); i++) ir->spaces |= 1u << space_of(instruction.operands[i]);

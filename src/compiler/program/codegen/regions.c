@@ -58,17 +58,15 @@ size_t regions_length(const struct IrFunction *ir) {
 }
 
 static void append(struct IrFunction *ir, struct Instruction instruction) {
-  ir->instructions = make_room(ir->instructions, ir->count, sizeof *ir->instructions);
-  ir->instructions[ir->count++] = instruction;
+  APPEND(ir->instructions, ir->count, instruction);
 }
 
 /* Returns the open region of a condition, the first of count; opens one if there is none. */
 static struct Region *open_region(struct Region **regions, size_t *count, Slot condition) {
   for (size_t i = *count; i-- > 0;)
     if ((*regions)[i].condition == condition) return &(*regions)[i];
-  *regions = make_room(*regions, *count, sizeof **regions);
-  (*regions)[*count] = (struct Region){.condition = condition};
-  return &(*regions)[(*count)++];
+  APPEND(*regions, *count, (struct Region){.condition = condition});
+  return &(*regions)[*count - 1];
 }
 
 /* Appends the instructions of a region in their place, or SKIP with the region if there are enough of them. */
@@ -79,8 +77,7 @@ static void close_region(struct SeparatedFunction *separated, struct Region *reg
     struct Instruction skip = {
         .opcode = SKIP, .result = (Slot)separated->region_count, .operands = {region->condition}};
     append(&separated->outer, skip);
-    separated->regions = make_room(separated->regions, separated->region_count, sizeof *separated->regions);
-    separated->regions[separated->region_count++] = *region;
+    APPEND(separated->regions, separated->region_count, *region);
   }
   region->ir = (struct IrFunction){0};
 }

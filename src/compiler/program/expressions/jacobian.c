@@ -34,8 +34,7 @@ struct JacobianElements {
 };
 
 static void append(struct JacobianElements *list, size_t row, size_t column, Node value) {
-  list->items = make_room(list->items, list->count, sizeof *list->items);
-  list->items[list->count++] = (struct JacobianElement){{row, column}, value};
+  APPEND(list->items, list->count, (struct JacobianElement){{row, column}, value});
 }
 
 static size_t column_of(const struct Graph *graph, size_t coordinates, Node symbol) {

@@ -76,8 +76,7 @@ static void append_under(struct PendingChecks *list, struct PendingCheck check, 
   }
   size_t number = list->count + 1;
   *end = number;
-  list->items = make_room(list->items, list->count, sizeof *list->items);
-  list->items[list->count++] = check;
+  APPEND(list->items, list->count, check);
 }
 
 /* Adds a check for each guard condition of the present node. */

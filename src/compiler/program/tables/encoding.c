@@ -83,8 +83,7 @@ static uint32_t index_of(const struct Encoding *encoding, Slot slot) {
 }
 
 static void append_word(struct WordList *words, uint32_t word) {
-  words->items = make_room(words->items, words->count, sizeof *words->items);
-  words->items[words->count++] = word;
+  APPEND(words->items, words->count, word);
 }
 
 /* Appends one run: instructions first .. end - 1 of the schedule. */

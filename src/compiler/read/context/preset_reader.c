@@ -61,8 +61,7 @@ static void read_value(struct Reader *reader, xmlNodePtr node, struct Preset *pr
     report_at(reader, node, "the preset names '%s' twice; expected one value", name);
   else {
     check_preset_value(reader, node, variable, value);
-    preset->values = make_room(preset->values, preset->count, sizeof *preset->values);
-    preset->values[preset->count++] = (struct PresetValue){name, value};
+    APPEND(preset->values, preset->count, (struct PresetValue){name, value});
   }
 }
 
@@ -83,6 +82,5 @@ void read_preset(struct Reader *reader, xmlNodePtr node) {
   if (xmlFirstElementChild(node) == NULL)
     report_at(reader, node, "the preset '%s' sets nothing; expected <at name=\"...\" value=\"...\"/> in it",
               preset.name);
-  model->presets = make_room(model->presets, model->preset_count, sizeof *model->presets);
-  model->presets[model->preset_count++] = preset;
+  APPEND(model->presets, model->preset_count, preset);
 }

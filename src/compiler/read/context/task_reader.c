@@ -28,8 +28,7 @@ static void read_goal(struct Reader *reader, xmlNodePtr node, struct Task *task)
   if (strlen(goal.formula) > FORMULA_LIMIT)
     report_at(reader, node, "%s is a formula of more than %d characters; expected a shorter one, or an output's name",
               what, FORMULA_LIMIT);
-  task->goals = make_room(task->goals, task->count, sizeof *task->goals);
-  task->goals[task->count++] = goal;
+  APPEND(task->goals, task->count, goal);
 }
 
 void read_task(struct Reader *reader, xmlNodePtr node) {
@@ -55,6 +54,5 @@ void read_task(struct Reader *reader, xmlNodePtr node) {
   if (xmlFirstElementChild(node) == NULL)
     report_at(reader, node, "the task '%s' has no goal; expected <goal min=\"...\" max=\"...\">expression</goal> in it",
               task.name);
-  model->tasks = make_room(model->tasks, model->task_count, sizeof *model->tasks);
-  model->tasks[model->task_count++] = task;
+  APPEND(model->tasks, model->task_count, task);
 }

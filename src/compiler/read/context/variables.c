@@ -4,9 +4,8 @@
 #include "base/memory.h"
 
 struct Variable *append_variable(struct VariableList *list, struct Variable variable) {
-  list->items = make_room(list->items, list->count, sizeof *list->items);
-  list->items[list->count] = variable;
-  return &list->items[list->count++];
+  APPEND(list->items, list->count, variable);
+  return &list->items[list->count - 1];
 }
 
 Node append_input(struct Reader *reader, struct Variable variable) {

@@ -61,8 +61,7 @@ static void check_target(struct Reader *reader, xmlNodePtr node, const struct Ev
 }
 
 static void append_assignment(struct Event *event, Node symbol, Node value) {
-  event->assignments = make_room(event->assignments, event->assignment_count, sizeof *event->assignments);
-  event->assignments[event->assignment_count++] = (struct Assignment){symbol, value};
+  APPEND(event->assignments, event->assignment_count, (struct Assignment){symbol, value});
 }
 
 /* True if the author has given no unit to the mode, which is then a pure number. */
@@ -200,8 +199,7 @@ static void read_assignments(struct Reader *reader, xmlNodePtr node, struct Even
 
 static void append_event(struct Reader *reader, const struct Event *event) {
   struct Switches *switches = &reader->model->switches;
-  switches->events = make_room(switches->events, switches->event_count, sizeof *switches->events);
-  switches->events[switches->event_count++] = *event;
+  APPEND(switches->events, switches->event_count, *event);
 }
 
 /* True if the system is read for a linearization, which has no events. */

@@ -57,9 +57,8 @@ static size_t declare_switched_constraint(struct Reader *reader, struct Variable
 
 static void append_contact(struct Reader *reader, struct Variable constraint) {
   struct Switches *switches = &reader->model->switches;
-  switches->contacts = make_room(switches->contacts, switches->contact_count, sizeof *switches->contacts);
-  switches->contacts[switches->contact_count++] =
-      (struct Contact){.mode = new_reported_mode(reader, &constraint, "closed")};
+  APPEND(switches->contacts, switches->contact_count,
+         (struct Contact){.mode = new_reported_mode(reader, &constraint, "closed")});
   switches->contacts[switches->contact_count - 1].constraint = declare_switched_constraint(reader, constraint);
 }
 
@@ -81,9 +80,8 @@ void declare_stop(struct Reader *reader, xmlNodePtr node) {
 /* Appends a friction whose constraint follows. The pointer is valid until the next call. */
 static struct Friction *append_friction(struct Reader *reader, struct Friction friction) {
   struct Switches *switches = &reader->model->switches;
-  switches->frictions = make_room(switches->frictions, switches->friction_count, sizeof *switches->frictions);
-  switches->frictions[switches->friction_count] = friction;
-  return &switches->frictions[switches->friction_count++];
+  APPEND(switches->frictions, switches->friction_count, friction);
+  return &switches->frictions[switches->friction_count - 1];
 }
 
 /* Turns the last friction into the first axis of a friction in a plane, and appends the second axis. */

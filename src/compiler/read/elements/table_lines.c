@@ -18,8 +18,7 @@ double *table_numbers(const char *line, size_t *count, const char **rest) {
     double number = strtod(next, &end);
     const char *after = end + strspn(end, blanks);
     if (end == next || (*after != '\0' && *after != ',' && *after != ';' && after == end)) break;
-    numbers = make_room(numbers, *count, sizeof *numbers);
-    numbers[(*count)++] = number;
+    APPEND(numbers, *count, number);
     *rest = next = after;
     if (*after == ',' || *after == ';') next = after + 1 + strspn(after + 1, blanks);
   }

@@ -159,8 +159,7 @@ static void find_ranges(struct Sampling *sampling, const struct Rule *rule, stru
     double back =
         graph->symbols[i].kind == TIME ? -INFINITY : end_of(sampling, i, range_towards(sampling, rule, i, -1.0), -1.0);
     if (isinf(forth) && isinf(back)) continue;
-    choice->ranges = make_room(choice->ranges, choice->range_count, sizeof *choice->ranges);
-    choice->ranges[choice->range_count++] = (struct ExactRange){i, fmin(back, forth), fmax(back, forth)};
+    APPEND(choice->ranges, choice->range_count, (struct ExactRange){i, fmin(back, forth), fmax(back, forth)});
   }
   release(is_curved);
 }

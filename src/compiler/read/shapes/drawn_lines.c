@@ -110,8 +110,7 @@ static void read_end(struct Reader *reader, xmlNodePtr node, const char *attribu
 }
 
 static void keep_line(struct LineDrawing *drawing, struct DrawnLine line) {
-  drawing->lines = make_room(drawing->lines, drawing->count, sizeof *drawing->lines);
-  drawing->lines[drawing->count++] = line;
+  APPEND(drawing->lines, drawing->count, line);
 }
 
 void draw_spring(struct Reader *reader, xmlNodePtr node) {

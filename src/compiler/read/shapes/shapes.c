@@ -101,8 +101,7 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
   shape.is_hidden = attribute_is(node, "drawn", "false") || attribute_is(node, "drawn", "0");
   for (int i = 0; i < 3; i++) shape.is_flat[i] = is_zero_or_missing(node, measures[2 + i].name);
   reader->present->number = mechanism->shape_count;
-  mechanism->shapes = make_room(mechanism->shapes, mechanism->shape_count, sizeof *mechanism->shapes);
-  mechanism->shapes[mechanism->shape_count++] = shape;
+  APPEND(mechanism->shapes, mechanism->shape_count, shape);
 }
 
 static Node read_length(struct Reader *reader, xmlNodePtr node, const char *name) {

@@ -39,9 +39,7 @@ static void append_body(struct Reader *reader, struct Body body) {
   *named = (struct NamedBody){model->mechanism.body_count, body.line};
   if (find_body(reader, body.name) == NULL) names_set(reader->bodies, body.name, named);
   body.line = scope_line(reader->scope, body.line);
-  model->mechanism.bodies =
-      make_room(model->mechanism.bodies, model->mechanism.body_count, sizeof *model->mechanism.bodies);
-  model->mechanism.bodies[model->mechanism.body_count++] = body;
+  APPEND(model->mechanism.bodies, model->mechanism.body_count, body);
 }
 
 /*

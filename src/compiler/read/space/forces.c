@@ -67,9 +67,7 @@ void add_virtual_work(struct Model *model, Node force, const struct Gradient *gr
 }
 
 static void append_point_force(struct Model *model, Node position, Node force) {
-  model->forces.at_points =
-      make_room(model->forces.at_points, model->forces.point_count, sizeof *model->forces.at_points);
-  model->forces.at_points[model->forces.point_count++] = (struct PointForce){position, force};
+  APPEND(model->forces.at_points, model->forces.point_count, (struct PointForce){position, force});
 }
 
 static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const char *name, const char *what) {
@@ -151,8 +149,7 @@ static void add_torque(struct Reader *reader, long line, struct Vector torque, s
   struct Gradient gradient = weighted_gradient(graph, velocity.along, torque.along, 3, KIND(VELOCITY));
   add_virtual_work(model, ONE, &gradient);
   add_term(model, &model->forces.prescribed_power, vector_dot(graph, torque, prescribed_part(model, velocity)));
-  model->forces.torques = make_room(model->forces.torques, model->forces.torque_count, sizeof *model->forces.torques);
-  model->forces.torques[model->forces.torque_count++] = (struct Torque){torque, displaced};
+  APPEND(model->forces.torques, model->forces.torque_count, (struct Torque){torque, displaced});
 }
 
 void add_torque_on(struct Reader *reader, long line, struct Vector torque, const struct ReferenceFrame *frame) {

@@ -185,8 +185,7 @@ static Node planar_component(struct Reader *reader, xmlNodePtr node, const char 
 }
 
 static void append_step(struct Graph *graph, struct ReferenceFrame *frame, const struct Pose *step) {
-  frame->steps = make_room(frame->steps, frame->step_count, sizeof *frame->steps);
-  frame->steps[frame->step_count++] = *step;
+  APPEND(frame->steps, frame->step_count, *step);
   pose_follow(graph, &frame->pose, step);
 }
 
@@ -376,10 +375,7 @@ void add_regularization_of_norm(struct Reader *reader, xmlNodePtr node) {
   const size_t *frame = name != NULL ? names_find(reader->frames, name) : NULL;
   if (frame != NULL) {
     const struct Variable *norm = &model->constraints.items[reader->present->number];
-    model->mechanism.regularizations =
-        make_room(model->mechanism.regularizations, model->mechanism.regularization_count,
-                  sizeof *model->mechanism.regularizations);
-    model->mechanism.regularizations[model->mechanism.regularization_count++] =
-        (struct Regularization){norm->node, inertia_of_norm(model, *frame)};
+    APPEND(model->mechanism.regularizations, model->mechanism.regularization_count,
+           (struct Regularization){norm->node, inertia_of_norm(model, *frame)});
   }
 }

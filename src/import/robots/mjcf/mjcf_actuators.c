@@ -228,6 +228,5 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
     actuator.force[0] = actuator.force[1] = NAN;
   }
   for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
-  robot->actuators = make_room(robot->actuators, robot->actuator_count, sizeof *robot->actuators);
-  robot->actuators[robot->actuator_count++] = actuator;
+  APPEND(robot->actuators, robot->actuator_count, actuator);
 }

@@ -28,8 +28,7 @@ void mjcf_read_rule(struct Mjcf *mjcf, xmlNodePtr node) {
   struct ContactRule rule = {.node = node, .is_pair = is_pair};
   for (int i = 0; i < 2; i++)
     rule.names[i] = required_attribute(&mjcf->file, node, format_text("%s%d", is_pair ? "geom" : "body", i + 1));
-  mjcf->rules = make_room(mjcf->rules, mjcf->rule_count, sizeof *mjcf->rules);
-  mjcf->rules[mjcf->rule_count++] = rule;
+  APPEND(mjcf->rules, mjcf->rule_count, rule);
 }
 
 struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {

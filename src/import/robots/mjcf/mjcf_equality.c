@@ -21,8 +21,7 @@ static void add_coupling(struct Mjcf *mjcf, struct Coupling coupling) {
   struct Robot *robot = mjcf->file.robot;
   for (int power = 1; power < COUPLING_POWERS && coupling.parts[1].name == NULL; power++)
     coupling.coefficient[power] = 0;
-  robot->couplings = make_room(robot->couplings, robot->coupling_count, sizeof *robot->couplings);
-  robot->couplings[robot->coupling_count++] = coupling;
+  APPEND(robot->couplings, robot->coupling_count, coupling);
 }
 
 /* Returns the joint that an attribute names; NULL after reporting that there is none. */
@@ -130,9 +129,9 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
                  "torquescale=\"0\" of <weld> constrains no rotation; expected a <connect>");
   if (!has_attribute(node, "site1") && is_fixed) weld_bodies(mjcf, node, &ends, name);
   else if (!has_attribute(node, "site1")) connect_bodies(mjcf, node, &ends, name);
-  robot->loops = make_room(robot->loops, robot->loop_count, sizeof *robot->loops);
-  robot->loops[robot->loop_count++] = (struct RobotLoop){
-      .name = name, .line = line_of(node), .is_fixed = is_fixed, .link_names = {ends.names[0], ends.names[1]}};
+  APPEND(robot->loops, robot->loop_count,
+         (struct RobotLoop){
+             .name = name, .line = line_of(node), .is_fixed = is_fixed, .link_names = {ends.names[0], ends.names[1]}});
 }
 
 /* Reads a polynomial relation of two tendons, or a constant length of one. */

@@ -191,8 +191,7 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
   if (touches) mjcf_set_contact(mjcf, &contact, link, &shape);
   struct Collision **shapes = touches ? &link->collisions : &link->visuals;
   size_t *count = touches ? &link->collision_count : &link->visual_count;
-  *shapes = make_room(*shapes, *count, sizeof **shapes);
-  (*shapes)[(*count)++] = shape;
+  APPEND(*shapes, *count, shape);
 }
 
 static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {

@@ -15,8 +15,7 @@ static void read_fixed_tendon(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon 
     struct TransmissionTerm term = {.joint_name = required_attribute(&mjcf->file, child, "joint"), .coefficient = 1};
     required_attribute(&mjcf->file, child, "coef");
     read_numbers(&mjcf->file, child, "coef", 1, &term.coefficient);
-    transmission->terms = make_room(transmission->terms, transmission->count, sizeof *transmission->terms);
-    transmission->terms[transmission->count++] = term;
+    APPEND(transmission->terms, transmission->count, term);
   }
   if (transmission->count == 0)
     report_error(mjcf->file.diagnostics, tendon->line,
@@ -135,8 +134,7 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
   tendon.lower = limits[0];
   tendon.upper = limits[1];
   mjcf_reject(mjcf, node, "actuatorfrcrange");
-  robot->tendons = make_room(robot->tendons, robot->tendon_count, sizeof *robot->tendons);
-  robot->tendons[robot->tendon_count++] = tendon;
+  APPEND(robot->tendons, robot->tendon_count, tendon);
 }
 
 const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
