@@ -231,94 +231,38 @@ struct IrFunction *ir_of_targets(struct CodeGenerator *generator, const Node *no
   return ir;
 }
 
-static struct IrFunction *build_indicators(const struct Program *program, struct CodeGenerator *generator) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  return ir_of_targets(generator, switching->indicators, switching->indicator_count);
-}
-
-static struct IrFunction *build_rounding_bounds(const struct Program *program, struct CodeGenerator *generator) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  return ir_of_targets(generator, switching->rounding_bounds, switching->indicator_count);
-}
-
-static struct IrFunction *build_switching_values(const struct Program *program, struct CodeGenerator *generator) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  return ir_of_targets(generator, switching->values, switching->value_count);
-}
-
-static struct IrFunction *build_resting_sums(const struct Program *program, struct CodeGenerator *generator) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  return ir_of_targets(generator, switching->resting_sums, switching->resting_sum_count);
-}
-
-static struct IrFunction *build_ball_distances(const struct Program *program, struct CodeGenerator *generator) {
-  const struct SwitchingExpressions *switching = program->equations->switching;
-  return ir_of_targets(generator, switching->ball_distances, program->model->switches.ball_count);
-}
-
-static bool starts_follow(const struct Program *program) {
-  return program->expressions->initial.count > 0;
-}
-
-static bool moves(const struct Program *program) {
-  return program->interface->state_count > 0;
-}
-
-static bool has_weighted_gradient(const struct Program *program) {
-  return program->expressions->weighted_gradient != NULL;
-}
-
-static bool has_jacobian(const struct Program *program) {
-  return program->expressions->jacobian != NULL && program->expressions->jacobian->value != NULL;
-}
-
-static bool is_exact(const struct Program *program) {
-  return program->expressions->linear != NULL;
-}
-
-static bool is_constrained(const struct Program *program) {
-  return program->equations->constraints->count > 0;
-}
-
-static bool has_contacts(const struct Program *program) {
-  return program->model->switches.contact_count > 0;
-}
-
-static bool is_fixed_at_start(const struct Program *program) {
-  return is_constrained(program) && has_fixed_coordinates(program->model);
-}
-
-static bool switches(const struct Program *program) {
-  return program->equations->switching != NULL;
-}
-
-static bool has_series(const struct Program *program) {
-  return program->series != NULL;
-}
-
-static bool has_limit(const struct Program *program) {
-  return program->series != NULL && program->series->limit.count > 0;
-}
-
-static bool has_output_series(const struct Program *program) {
-  return program->output_series != NULL;
-}
-
-static bool has_resting_sums(const struct Program *program) {
-  return switches(program) && program->equations->switching->resting_sum_count > 0;
-}
-
-static bool has_balls(const struct Program *program) {
-  return switches(program) && program->model->switches.ball_count > 0;
-}
-
-static bool has_watched_limit(const struct Program *program) {
-  return program->watched_series != NULL;
-}
-
-static bool has_results(const struct Program *program) {
-  return program->interface->result_count > 0;
-}
+/* Define functions: one builds the instruction list of nodes, the other is true if a program needs a function. */
+#define TARGETS(function, nodes, count)                                                                                \
+  static struct IrFunction *function(const struct Program *program, struct CodeGenerator *generator) {                 \
+    return ir_of_targets(generator, nodes, count);                                                                     \
+  }
+#define NEEDED(function, condition)                                                                                    \
+  static bool function(const struct Program *program) {                                                                \
+    return condition;                                                                                                  \
+  }
+TARGETS(build_indicators, program->equations->switching->indicators, program->equations->switching->indicator_count)
+TARGETS(build_rounding_bounds, program->equations->switching->rounding_bounds,
+        program->equations->switching->indicator_count)
+TARGETS(build_switching_values, program->equations->switching->values, program->equations->switching->value_count)
+TARGETS(build_resting_sums, program->equations->switching->resting_sums,
+        program->equations->switching->resting_sum_count)
+TARGETS(build_ball_distances, program->equations->switching->ball_distances, program->model->switches.ball_count)
+NEEDED(starts_follow, program->expressions->initial.count > 0)
+NEEDED(moves, program->interface->state_count > 0)
+NEEDED(has_weighted_gradient, program->expressions->weighted_gradient != NULL)
+NEEDED(has_jacobian, program->expressions->jacobian != NULL && program->expressions->jacobian->value != NULL)
+NEEDED(is_exact, program->expressions->linear != NULL)
+NEEDED(is_constrained, program->equations->constraints->count > 0)
+NEEDED(has_contacts, program->model->switches.contact_count > 0)
+NEEDED(is_fixed_at_start, is_constrained(program) && has_fixed_coordinates(program->model))
+NEEDED(switches, program->equations->switching != NULL)
+NEEDED(has_series, program->series != NULL)
+NEEDED(has_limit, program->series != NULL && program->series->limit.count > 0)
+NEEDED(has_output_series, program->output_series != NULL)
+NEEDED(has_resting_sums, switches(program) && program->equations->switching->resting_sum_count > 0)
+NEEDED(has_balls, switches(program) && program->model->switches.ball_count > 0)
+NEEDED(has_watched_limit, program->watched_series != NULL)
+NEEDED(has_results, program->interface->result_count > 0)
 
 const struct GeneratedFunction generated_functions[FUNCTION_COUNT] = {
     [FUNCTION_PREPARE] = {"Constants that depend on parameters alone", "prepare",
