@@ -1,6 +1,7 @@
 #include "robots/robot_elements.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdbool.h>
 #include <string.h>
 
@@ -14,15 +15,21 @@ xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, cons
   return node;
 }
 
-xmlNodePtr write_element(const struct Writer *writer, const char *name) {
-  return write_element_in(writer, writer->system, name);
+xmlNodePtr write_element(const struct Writer *writer, const char *name, ...) {
+  xmlNodePtr node = write_element_in(writer, writer->system, name);
+  va_list pairs;
+  va_start(pairs, name);
+  for (const char *attribute = va_arg(pairs, const char *); attribute != NULL; attribute = va_arg(pairs, const char *))
+    set_attribute(node, attribute, va_arg(pairs, const char *));
+  va_end(pairs);
+  return node;
 }
 
-void set_attribute(xmlNodePtr node, const char *attribute, char *value) {
+void set_attribute(xmlNodePtr node, const char *attribute, const char *value) {
   xmlNewProp(node, (const xmlChar *)attribute, (const xmlChar *)value);
 }
 
-void set_content(xmlNodePtr node, char *text) {
+void set_content(xmlNodePtr node, const char *text) {
   xmlNodeAddContent(node, (const xmlChar *)text);
 }
 
@@ -30,30 +37,21 @@ void set_number(xmlNodePtr node, const char *attribute, double value) {
   if (value != 0) set_attribute(node, attribute, number(value));
 }
 
-xmlNodePtr write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description) {
-  xmlNodePtr parameter = write_element(writer, "parameter");
-  set_attribute(parameter, "name", name);
-  set_attribute(parameter, "start", number(value));
-  set_attribute(parameter, "unit", copy_text(unit));
-  set_attribute(parameter, "description", description);
-  return parameter;
+xmlNodePtr write_parameter(const struct Writer *writer, const char *name, double value, const char *unit,
+                           const char *description) {
+  return write_element(writer, "parameter", "name", name, "start", number(value), "unit", unit, "description",
+                       description, NULL);
 }
 
-void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description) {
-  xmlNodePtr output = write_element(writer, "output");
-  set_attribute(output, "name", name);
-  set_attribute(output, "unit", copy_text(unit));
-  set_attribute(output, "description", description);
-  set_content(output, expression);
+void write_output(const struct Writer *writer, const char *name, const char *unit, const char *expression,
+                  const char *description) {
+  set_content(write_element(writer, "output", "name", name, "unit", unit, "description", description, NULL),
+              expression);
 }
 
 xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description) {
-  xmlNodePtr coordinate = write_element(writer, "coordinate");
-  set_attribute(coordinate, "name", copy_text(name));
-  set_attribute(coordinate, "velocity", format_text("%s_velocity", name));
-  set_attribute(coordinate, "unit", copy_text(unit));
-  set_attribute(coordinate, "description", copy_text(description));
-  return coordinate;
+  return write_element(writer, "coordinate", "name", name, "velocity", format_text("%s_velocity", name), "unit", unit,
+                       "description", description, NULL);
 }
 
 xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char *unit, double effort,
@@ -66,13 +64,10 @@ xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char
     set_attribute(write_parameter(writer, format_text("%s_effort", name), effort, unit_of_effort,
                                   format_text("largest %s along %s", kind, name)),
                   "min", number(0));
-  xmlNodePtr input = write_element(writer, "input"), force = write_element(writer, "force");
-  set_attribute(input, "name", wanted);
-  set_attribute(input, "unit", copy_text(unit_of_effort));
-  set_attribute(input, "description", format_text("%s along %s", kind, name));
-  set_attribute(force, "coordinate", copy_text(name));
-  set_content(force, isnan(effort) ? copy_text(wanted)
-                                   : format_text("max(-%s_effort, min(%s_effort, %s))", name, name, wanted));
+  write_element(writer, "input", "name", wanted, "unit", unit_of_effort, "description",
+                format_text("%s along %s", kind, name), NULL);
+  set_content(write_element(writer, "force", "coordinate", name, NULL),
+              isnan(effort) ? wanted : format_text("max(-%s_effort, min(%s_effort, %s))", name, name, wanted));
   return coordinate;
 }
 
@@ -86,11 +81,8 @@ void write_excess_of_limits(const struct Writer *writer, const char *name, const
 void write_end_contacts(const struct Writer *writer, const char *name, const char *unit, const char *position,
                         const char *lower, const char *upper) {
   for (int end = 0; end < 2; end++) {
-    xmlNodePtr contact = write_element(writer, "contact");
-    set_attribute(contact, "name", format_text("%s_%s", name, end == 0 ? "min" : "max"));
-    set_attribute(contact, "unit", copy_text(unit));
-    set_attribute(contact, "gap",
-                  end == 0 ? format_text("%s - (%s)", position, lower) : format_text("%s - %s", upper, position));
+    write_element(writer, "contact", "name", format_text("%s_%s", name, end == 0 ? "min" : "max"), "unit", unit, "gap",
+                  end == 0 ? format_text("%s - (%s)", position, lower) : format_text("%s - %s", upper, position), NULL);
   }
 }
 

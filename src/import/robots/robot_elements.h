@@ -15,16 +15,20 @@ struct Writer {
 };
 
 xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name);
-xmlNodePtr write_element(const struct Writer *writer, const char *name);
 
-void set_attribute(xmlNodePtr node, const char *attribute, char *value);
-void set_content(xmlNodePtr node, char *text);
+/* Writes an element with attributes, each by its name and its value; NULL follows the last one. */
+xmlNodePtr write_element(const struct Writer *writer, const char *name, ...) __attribute__((sentinel));
+
+void set_attribute(xmlNodePtr node, const char *attribute, const char *value);
+void set_content(xmlNodePtr node, const char *text);
 
 /* Sets an attribute; omits 0, the default of attributes. */
 void set_number(xmlNodePtr node, const char *attribute, double value);
 
-xmlNodePtr write_parameter(const struct Writer *writer, char *name, double value, const char *unit, char *description);
-void write_output(const struct Writer *writer, char *name, const char *unit, char *expression, char *description);
+xmlNodePtr write_parameter(const struct Writer *writer, const char *name, double value, const char *unit,
+                           const char *description);
+void write_output(const struct Writer *writer, const char *name, const char *unit, const char *expression,
+                  const char *description);
 
 /* Writes a <coordinate> with the velocity NAME_velocity. */
 xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description);

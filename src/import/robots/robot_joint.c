@@ -36,8 +36,8 @@ void write_friction_parameters(const struct Writer *writer, const struct Robot *
     has_sliding |= robot->tendons[i].friction > 0 && is_length;
     has_rotational |= robot->tendons[i].friction > 0 && !is_length;
   }
-  if (has_rotational) write_parameter(writer, copy_text("creep_rate"), creep_rate, "rad/s", copy_text(meaning));
-  if (has_sliding) write_parameter(writer, copy_text("creep_velocity"), creep_velocity, "m/s", copy_text(meaning));
+  if (has_rotational) write_parameter(writer, "creep_rate", creep_rate, "rad/s", meaning);
+  if (has_sliding) write_parameter(writer, "creep_velocity", creep_velocity, "m/s", meaning);
 }
 
 /* Expressions of a joint's velocity, and of its ratio to that of its leader. */
@@ -64,7 +64,7 @@ static struct JointMotion write_follower(const struct Writer *writer, const stru
   if (joint_slides(joint) != joint_slides(joint->leader))
     write_parameter(writer, joint_ratio(joint), joint->ratio, joint_slides(joint) ? "m/rad" : "rad/m",
                     format_text("velocity of %s over that of %s", name, leader));
-  write_output(writer, copy_text(name), joint_unit(joint), joint_position(joint), copy_text(description));
+  write_output(writer, name, joint_unit(joint), joint_position(joint), description);
   char *ratio = joint_ratio(joint);
   return (struct JointMotion){.velocity = format_text("(%s*%s_velocity)", ratio, leader), .ratio = ratio};
 }
@@ -75,16 +75,13 @@ static void write_friction(const struct Writer *writer, const struct RobotJoint 
   write_parameter(writer, format_text("%s_friction", name), joint->friction, joint_slides(joint) ? "N" : "N.m",
                   format_text("Coulomb friction of %s", name));
   if (writer->options->sticks) {
-    xmlNodePtr friction = write_element(writer, "friction");
-    set_attribute(friction, "name", format_text("%s_bearing", name));
-    set_attribute(friction, "velocity", copy_text(motion->velocity));
-    set_attribute(friction, "force", format_text("%s_friction", name));
+    write_element(writer, "friction", "name", format_text("%s_bearing", name), "velocity", motion->velocity, "force",
+                  format_text("%s_friction", name), NULL);
     return;
   }
-  xmlNodePtr force = write_element(writer, "force");
-  set_attribute(force, "coordinate", copy_text(joint->leader->symbol));
-  set_content(force, format_text("-%s_friction*tanh(%s/%s)*%s", name, motion->velocity,
-                                 joint_slides(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
+  set_content(write_element(writer, "force", "coordinate", joint->leader->symbol, NULL),
+              format_text("-%s_friction*tanh(%s/%s)*%s", name, motion->velocity,
+                          joint_slides(joint) ? "creep_velocity" : "creep_rate", motion->ratio));
 }
 
 /* Writes the energies of a joint: kinetic energy of its motor and potential of its spring. */
@@ -94,13 +91,13 @@ static void write_energies_of_joint(const struct Writer *writer, const struct Ro
   if (joint->armature > 0) {
     write_parameter(writer, format_text("%s_armature", name), joint->armature, joint_slides(joint) ? "kg" : "kg.m2",
                     format_text("inertia of the motor of %s", name));
-    set_content(write_element(writer, "kinetic"), format_text("%s_armature*%s^2/2", name, motion->velocity));
+    set_content(write_element(writer, "kinetic", NULL), format_text("%s_armature*%s^2/2", name, motion->velocity));
   }
   if (joint->stiffness > 0) {
     char *position = joint_position(joint), *rest = number(fabs(joint->rest));
     write_parameter(writer, format_text("%s_stiffness", name), joint->stiffness,
                     joint_slides(joint) ? "N/m" : "N.m/rad", format_text("stiffness of %s", name));
-    set_content(write_element(writer, "potential"),
+    set_content(write_element(writer, "potential", NULL),
                 joint->rest == 0
                     ? format_text("%s_stiffness*%s^2/2", name, position)
                     : format_text("%s_stiffness*(%s %c %s)^2/2", name, position, joint->rest < 0 ? '+' : '-', rest));
@@ -113,7 +110,7 @@ static void write_dissipation_of_joint(const struct Writer *writer, const struct
   if (joint->damping > 0) {
     write_parameter(writer, format_text("%s_damping", name), joint->damping,
                     joint_slides(joint) ? "N.s/m" : "N.m.s/rad", format_text("viscous damping of %s", name));
-    set_content(write_element(writer, "dissipation"), format_text("%s_damping*%s^2/2", name, motion->velocity));
+    set_content(write_element(writer, "dissipation", NULL), format_text("%s_damping*%s^2/2", name, motion->velocity));
   }
   if (joint->friction > 0) write_friction(writer, joint, motion);
 }
@@ -121,10 +118,7 @@ static void write_dissipation_of_joint(const struct Writer *writer, const struct
 /* Writes stops. A mimicking joint stops its leader by contacts. */
 static void write_stops(const struct Writer *writer, const struct RobotJoint *joint, char *lower, char *upper) {
   if (joint->leader == joint) {
-    xmlNodePtr stop = write_element(writer, "stop");
-    set_attribute(stop, "coordinate", copy_text(joint->symbol));
-    set_attribute(stop, "min", lower);
-    set_attribute(stop, "max", upper);
+    write_element(writer, "stop", "coordinate", joint->symbol, "min", lower, "max", upper, NULL);
     return;
   }
   write_end_contacts(writer, joint->symbol, joint_unit(joint), joint_position(joint), lower, upper);
@@ -203,13 +197,13 @@ static void write_isotropic(const struct Writer *writer, const struct RobotJoint
     char *parameter = format_text("%s_%sarmature", name, prefix);
     write_parameter(writer, parameter, joint->armature, is_turning ? "kg.m2" : "kg",
                     format_text("inertia of %s %s", name, how));
-    set_content(write_element(writer, "kinetic"), format_text("%s*%s*%s", factor, parameter, square));
+    set_content(write_element(writer, "kinetic", NULL), format_text("%s*%s*%s", factor, parameter, square));
   }
   if (joint->damping > 0) {
     char *parameter = format_text("%s_%sdamping", name, prefix);
     write_parameter(writer, parameter, joint->damping, is_turning ? "N.m.s/rad" : "N.s/m",
                     format_text("viscous damping of %s %s", name, how));
-    set_content(write_element(writer, "dissipation"), format_text("%s*%s*%s", factor, parameter, square));
+    set_content(write_element(writer, "dissipation", NULL), format_text("%s*%s*%s", factor, parameter, square));
   }
 }
 
@@ -230,26 +224,25 @@ static void write_free_friction(const struct Writer *writer, const struct RobotJ
                   format_text("Coulomb friction of %s", name));
   write_parameter(writer, format_text("%s_turning_friction", name), joint->friction, "N.m",
                   format_text("Coulomb friction of %s", name));
-  xmlNodePtr force = writer->options->sticks ? NULL : write_element(writer, "force");
-  xmlNodePtr torque = writer->options->sticks ? NULL : write_element(writer, "torque");
+  xmlNodePtr force = writer->options->sticks ? NULL : write_element(writer, "force", NULL);
+  xmlNodePtr torque = writer->options->sticks ? NULL : write_element(writer, "torque", NULL);
   for (int i = 0; i < 6; i++) {
     bool is_turn = i >= 3;
     char *limit = format_text("%s_%sfriction", name, is_turn ? "turning_" : "");
     char *velocity =
         is_turn ? format_text("%s_body.%s", link, turns[i - 3]) : format_text("%s_%s_velocity", name, axes[i]);
     if (writer->options->sticks) {
-      xmlNodePtr friction = write_element(writer, "friction");
-      set_attribute(friction, "name", format_text("%s_bearing_%s%s", name, is_turn ? "about_" : "", axes[i % 3]));
-      set_attribute(friction, "velocity", velocity);
-      set_attribute(friction, "force", limit);
+      write_element(writer, "friction", "name",
+                    format_text("%s_bearing_%s%s", name, is_turn ? "about_" : "", axes[i % 3]), "velocity", velocity,
+                    "force", limit, NULL);
     } else
       set_attribute(is_turn ? torque : force, axes[i % 3],
                     format_text("-%s*tanh(%s/%s)", limit, velocity, is_turn ? "creep_rate" : "creep_velocity"));
   }
   if (writer->options->sticks) return;
-  set_attribute(force, "on", copy_text(link));
-  set_attribute(torque, "on", copy_text(link));
-  set_attribute(torque, "in", copy_text(link));
+  set_attribute(force, "on", link);
+  set_attribute(torque, "on", link);
+  set_attribute(torque, "in", link);
 }
 
 static void write_free(const struct Writer *writer, const struct RobotJoint *joint, const struct JointStart *start,
@@ -273,10 +266,8 @@ static const char *const prescribed[6] = {"x", "y", "z", "roll", "pitch", "yaw"}
 
 static void write_prescribed(const struct Writer *writer, const struct RobotJoint *joint) {
   for (int i = 0; i < 6; i++) {
-    xmlNodePtr input = write_element(writer, "input");
-    set_attribute(input, "name", format_text("%s_%s", joint->symbol, prescribed[i]));
-    set_attribute(input, "unit", copy_text(i < 3 ? "m" : "rad"));
-    set_attribute(input, "derivatives", copy_text("2"));
+    xmlNodePtr input = write_element(writer, "input", "name", format_text("%s_%s", joint->symbol, prescribed[i]),
+                                     "unit", i < 3 ? "m" : "rad", "derivatives", "2", NULL);
     set_number(input, "start", joint->start.position[i]);
     set_attribute(input, "description", format_text("%s of the body '%s'", prescribed[i], joint->child->name));
   }
@@ -287,7 +278,7 @@ static void write_prescribed_motion(const struct Writer *writer, xmlNodePtr fram
   for (int i = 0; i < 3; i++) set_attribute(translation, axes[i], format_text("%s_%s", joint->symbol, prescribed[i]));
   for (int i = 2; i >= 0; i--) {
     xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
-    set_attribute(rotation, "axis", copy_text(axes[i]));
+    set_attribute(rotation, "axis", axes[i]);
     set_attribute(rotation, "angle", format_text("%s_%s", joint->symbol, prescribed[3 + i]));
   }
 }
@@ -309,14 +300,14 @@ static void write_rotation(const struct Writer *writer, xmlNodePtr frame, const 
   int along = 0;
   while (along < 3 && fabs(axis[along]) != 1) along++;
   if (along < 3) {
-    set_attribute(rotation, "axis", copy_text(axes[along]));
+    set_attribute(rotation, "axis", axes[along]);
     set_attribute(rotation, "angle", term(axis[along], angle));
     return;
   }
   char *text[3];
   for (int i = 0; i < 3; i++) text[i] = number(axis[i]);
   set_attribute(rotation, "axis", format_text("%s %s %s", text[0], text[1], text[2]));
-  set_attribute(rotation, "angle", copy_text(angle));
+  set_attribute(rotation, "angle", angle);
 }
 
 static void write_slide(const struct Writer *writer, xmlNodePtr frame, const double axis[3], const char *length) {

@@ -63,13 +63,12 @@ void write_contact_parameters(const struct Writer *writer, const struct Robot *r
   double stiffness = fmax(mass, 1e-3) * (gravity > 0.0 ? gravity : usual_gravity) / sinking;
   if (stiffness > 1.0) stiffness = floor(stiffness);
   write_parameter(writer, format_text("%s_stiffness", prefix), stiffness, "N/m",
-                  copy_text("force by depth at each point that touches"));
+                  "force by depth at each point that touches");
   write_parameter(writer, format_text("%s_damping", prefix), usual_damping, "s/m",
-                  copy_text("by which the force grows with the speed"));
+                  "by which the force grows with the speed");
   write_parameter(writer, format_text("%s_friction", prefix), isnan(friction) ? -1 : friction, "1",
-                  copy_text(isnan(friction)
-                                ? "coefficient of friction of all shapes; below 0, each has that of the file"
-                                : "coefficient of friction"));
+                  isnan(friction) ? "coefficient of friction of all shapes; below 0, each has that of the file"
+                                  : "coefficient of friction");
 }
 
 void write_ground(struct Writer *writer, const struct Robot *robot) {
@@ -77,24 +76,17 @@ void write_ground(struct Writer *writer, const struct Robot *robot) {
   writer->has_own_frictions = isnan(friction);
   writer->line = robot->line;
   write_contact_parameters(writer, robot, ground, friction);
-  xmlNodePtr plane = write_element(writer, "shape");
-  set_attribute(plane, "name", copy_text(ground));
-  set_attribute(plane, "type", copy_text("plane"));
+  xmlNodePtr plane = write_element(writer, "shape", "name", ground, "type", "plane", NULL);
   if (robot->ground != NULL) place_element(plane, &robot->ground->placement);
 }
 
 void write_shape_contact(const struct Writer *writer, char *name, char *const shapes[2], const char *prefix,
                          double friction) {
-  xmlNodePtr contact = write_element(writer, "contact");
-  set_attribute(contact, "name", name);
-  set_attribute(contact, "between", copy_text(shapes[0]));
-  set_attribute(contact, "and", copy_text(shapes[1]));
-  set_attribute(contact, "stiffness", format_text("%s_stiffness", prefix));
-  set_attribute(contact, "damping", format_text("%s_damping", prefix));
-  set_attribute(contact, "friction",
-                isnan(friction)
-                    ? format_text("%s_friction", prefix)
-                    : format_text("if(%s_friction < 0, %s, %s_friction)", prefix, number(friction), prefix));
+  write_element(writer, "contact", "name", name, "between", shapes[0], "and", shapes[1], "stiffness",
+                format_text("%s_stiffness", prefix), "damping", format_text("%s_damping", prefix), "friction",
+                isnan(friction) ? format_text("%s_friction", prefix)
+                                : format_text("if(%s_friction < 0, %s, %s_friction)", prefix, number(friction), prefix),
+                NULL);
 }
 
 static void write_contact(const struct Writer *writer, const struct RobotLink *link, const struct Collision *collision,
@@ -109,18 +101,15 @@ static xmlNodePtr write_shape(struct Writer *writer, const struct RobotLink *lin
   static const char *const sizes[] = {"sizeX", "sizeY", "sizeZ"};
   const double *scale = collision->scale;
   writer->line = collision->line;
-  xmlNodePtr shape = write_element(writer, "shape");
-  set_attribute(shape, "name", name);
-  set_attribute(shape, "in", copy_text(link->symbol));
-  set_attribute(shape, "type", copy_text(collision->type));
+  xmlNodePtr shape = write_element(writer, "shape", "name", name, "in", link->symbol, "type", collision->type, NULL);
   place_element(shape, &collision->placement);
   for (int axis = 0; axis < 3; axis++) set_number(shape, sizes[axis], collision->size[axis]);
   set_number(shape, "radius", collision->radius);
   set_number(shape, "length", collision->length);
-  if (collision->color != NULL) set_attribute(shape, "color", copy_text(collision->color));
+  if (collision->color != NULL) set_attribute(shape, "color", collision->color);
   if (collision->file == NULL) return shape;
   char *x = number(scale[0]), *y = number(scale[1]), *z = number(scale[2]);
-  set_attribute(shape, "file", copy_text(collision->file));
+  set_attribute(shape, "file", collision->file);
   set_attribute(shape, "scale", format_text("%s %s %s", x, y, z));
   return shape;
 }
@@ -129,7 +118,7 @@ void write_shapes(struct Writer *writer, const struct RobotLink *link, bool move
   for (size_t i = 0; i < link->collision_count; i++) {
     char *name = format_text("%s_collision%zu", link->symbol, i + 1);
     xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
-    if (link->visual_count > 0) set_attribute(shape, "drawn", copy_text("false"));
+    if (link->visual_count > 0) set_attribute(shape, "drawn", "false");
     if (moves && meets_ground(writer->options, link, &link->collisions[i]))
       write_contact(writer, link, &link->collisions[i], name, i + 1);
   }

@@ -51,7 +51,7 @@ static void write_placement(const struct Writer *writer, xmlNodePtr frame, const
   for (int i = 2; i >= 0; i--) {
     if (angles[i] == 0) continue;
     xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
-    set_attribute(rotation, "axis", copy_text(axes[i]));
+    set_attribute(rotation, "axis", axes[i]);
     set_number(rotation, "angle", angles[i]);
   }
 }
@@ -61,10 +61,8 @@ static void write_body(const struct Writer *writer, const struct RobotLink *link
   static const char *const moments[3][3] = {{"Ixx", "Ixy", "Ixz"}, {NULL, "Iyy", "Iyz"}, {NULL, NULL, "Izz"}};
   const struct RigidBody *body = &link->carried;
   if (!body_has_inertia(body)) return;
-  xmlNodePtr node = write_element(writer, "body");
-  set_attribute(node, "name", format_text("%s_body", link->symbol));
-  set_attribute(node, "in", copy_text(link->symbol));
-  set_attribute(node, "mass", number(body->mass));
+  xmlNodePtr node = write_element(writer, "body", "name", format_text("%s_body", link->symbol), "in", link->symbol,
+                                  "mass", number(body->mass), NULL);
   for (int i = 0; i < 3; i++) set_number(node, axes[i], body->center[i]);
   for (int i = 0; i < 3; i++)
     for (int j = i; j < 3; j++) set_number(node, moments[i][j], body->tensor.at[i][j]);
@@ -81,12 +79,11 @@ static void write_link(struct Writer *writer, const struct RobotLink *link) {
   }
   writer->line = link->line;
   if (joint == NULL && floats) write_free_coordinates(writer, base, &no_start, "free motion of the base");
-  xmlNodePtr frame = write_element(writer, "frame");
-  set_attribute(frame, "name", copy_text(link->symbol));
+  xmlNodePtr frame = write_element(writer, "frame", "name", link->symbol, NULL);
   if (joint != NULL) {
     const struct RobotLink *parent = joint->parent;
     struct Placement placement = placement_within(&parent->placement, &joint->origin);
-    set_attribute(frame, "in", copy_text(parent->carrier->symbol));
+    set_attribute(frame, "in", parent->carrier->symbol);
     write_placement(writer, frame, &placement);
     write_motion(writer, frame, joint);
   } else if (floats) write_free_motion(writer, frame, base);
@@ -107,9 +104,7 @@ static const struct RobotLink *only_end(const struct Robot *robot) {
 
 static void write_tool(struct Writer *writer, const struct RobotLink *link) {
   writer->line = link->line;
-  xmlNodePtr point = write_element(writer, "point");
-  set_attribute(point, "name", copy_text(tool));
-  set_attribute(point, "in", copy_text(link->symbol));
+  write_element(writer, "point", "name", tool, "in", link->symbol, NULL);
   for (int i = 0; i < 3; i++)
     write_output(writer, format_text("%s_%s", tool, axes[i]), "m", format_text("%s.%s", tool, axes[i]),
                  format_text("position of '%s' along %s", link->name, axes[i]));
@@ -137,10 +132,10 @@ static void write_gravity(const struct Writer *writer, const struct Robot *robot
   const double *gravity = robot->gravity;
   double size = robot_gravity(robot);
   bool is_down = gravity[0] == 0 && gravity[1] == 0 && gravity[2] <= 0;
-  write_parameter(writer, copy_text("g"), size, "m/s2",
-                  copy_text(is_down ? "gravitational acceleration, along -z" : "gravitational acceleration"));
-  xmlNodePtr node = write_element(writer, "gravity");
-  if (is_down) set_attribute(node, "z", copy_text("-g"));
+  write_parameter(writer, "g", size, "m/s2",
+                  is_down ? "gravitational acceleration, along -z" : "gravitational acceleration");
+  xmlNodePtr node = write_element(writer, "gravity", NULL);
+  if (is_down) set_attribute(node, "z", "-g");
   for (int i = 0; i < 3 && !is_down; i++)
     if (gravity[i] != 0) set_attribute(node, axes[i], term(gravity[i] / size, "g"));
 }
@@ -151,9 +146,7 @@ static void write_balance(struct Writer *writer, const struct Robot *robot, cons
   if (share == 0 || size == 0 || !carrier_moves(link, writer->options->floats)) return;
   writer->line = link->line;
   char *name = format_text("%s_balance", link->symbol), *height = copy_text("");
-  xmlNodePtr point = write_element(writer, "point");
-  set_attribute(point, "name", name);
-  set_attribute(point, "in", copy_text(link->symbol));
+  xmlNodePtr point = write_element(writer, "point", "name", name, "in", link->symbol, NULL);
   for (int i = 0; i < 3; i++) set_number(point, axes[i], link->body.center[i]);
   for (int i = 0; i < 3; i++)
     if (robot->gravity[i] != 0)
@@ -161,16 +154,13 @@ static void write_balance(struct Writer *writer, const struct Robot *robot, cons
                            axes[i]);
   write_parameter(writer, format_text("%s_mass", name), share, "kg",
                   format_text("mass of '%s' whose weight is balanced", link->name));
-  set_content(write_element(writer, "potential"), format_text("%s_mass*g*(%s)", name, height));
+  set_content(write_element(writer, "potential", NULL), format_text("%s_mass*g*(%s)", name, height));
 }
 
 static void write_loop(struct Writer *writer, const struct RobotLoop *loop) {
   writer->line = loop->line;
-  xmlNodePtr joint = write_element(writer, "joint");
-  set_attribute(joint, "name", robot_symbol(loop->name));
-  set_attribute(joint, "type", copy_text(loop->is_fixed ? "fixed" : "spherical"));
-  set_attribute(joint, "from", copy_text(loop->links[0]->symbol));
-  set_attribute(joint, "to", copy_text(loop->links[1]->symbol));
+  write_element(writer, "joint", "name", robot_symbol(loop->name), "type", loop->is_fixed ? "fixed" : "spherical",
+                "from", loop->links[0]->symbol, "to", loop->links[1]->symbol, NULL);
 }
 
 static void write_robot(struct Writer *writer, const struct Robot *robot, const struct RobotLink *end) {
@@ -203,10 +193,8 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   writer->line = robot->line;
   /* no part of such a robot is stiff, so that an explicit method suffices */
   if (!has_losses(robot, writer->options) && !writer->options->has_ground && robot->pair_count == 0)
-    set_attribute(write_element(writer, "solver"), "method", copy_text("taylor"));
-  xmlNodePtr experiment = write_element(writer, "experiment");
-  set_attribute(experiment, "stopTime", number(1));
-  set_attribute(experiment, "stepSize", number(0.01));
+    write_element(writer, "solver", "method", "taylor", NULL);
+  write_element(writer, "experiment", "stopTime", number(1), "stepSize", number(0.01), NULL);
 }
 
 /* Reports a robot without movable joints, or a floating one without mass. */

@@ -11,7 +11,7 @@ static void write_coefficients(const struct Writer *writer, const struct Tendon 
   for (size_t i = 0; i < tendon->transmission.count; i++) {
     const struct TransmissionTerm *term = &tendon->transmission.terms[i];
     if (term->symbol == NULL) continue;
-    write_parameter(writer, copy_text(term->symbol), term->coefficient, joint_slides(term->joint) ? "rad/m" : "m/rad",
+    write_parameter(writer, term->symbol, term->coefficient, joint_slides(term->joint) ? "rad/m" : "m/rad",
                     format_text("coefficient in the tendon '%s' of the joint '%s'", tendon->name, term->joint->name));
   }
 }
@@ -21,7 +21,7 @@ static void write_spring(const struct Writer *writer, const struct Tendon *tendo
   write_parameter(writer, format_text("%s_stiffness", name), tendon->stiffness, slides ? "N/m" : "N.m/rad",
                   format_text("stiffness of the tendon '%s'", tendon->name));
   set_content(
-      write_element(writer, "potential"),
+      write_element(writer, "potential", NULL),
       tendon->relaxed[0] == tendon->relaxed[1]
           ? format_text("%s_stiffness*(%s - (%s))^2/2", name, name, lower)
           : format_text("%s_stiffness*(max(0, %s - (%s))^2 + min(0, %s - (%s))^2)/2", name, name, upper, name, lower));
@@ -32,7 +32,7 @@ static void write_square(const struct Writer *writer, const struct Tendon *tendo
                          const char *word, const char *unit, const char *meaning) {
   write_parameter(writer, format_text("%s_%s", tendon->symbol, word), value, unit,
                   format_text("%s the tendon '%s'", meaning, tendon->name));
-  set_content(write_element(writer, element),
+  set_content(write_element(writer, element, NULL),
               format_text("%s_%s*%s^2/2", tendon->symbol, word, transmission_rate(&tendon->transmission)));
 }
 
@@ -43,10 +43,8 @@ static void write_friction(const struct Writer *writer, const struct Tendon *ten
   write_parameter(writer, format_text("%s_friction", name), tendon->friction, slides ? "N" : "N.m",
                   format_text("Coulomb friction of the tendon '%s'", tendon->name));
   if (writer->options->sticks) {
-    xmlNodePtr friction = write_element(writer, "friction");
-    set_attribute(friction, "name", format_text("%s_sheath", name));
-    set_attribute(friction, "velocity", rate);
-    set_attribute(friction, "force", format_text("%s_friction", name));
+    write_element(writer, "friction", "name", format_text("%s_sheath", name), "velocity", rate, "force",
+                  format_text("%s_friction", name), NULL);
   } else
     write_term(writer, &tendon->transmission, number(1), format_text("%s_sheath", name),
                format_text("-%s_friction*tanh(%s/%s)", name, rate, creep), false);
@@ -57,7 +55,7 @@ void write_tendon(const struct Writer *writer, const struct Tendon *tendon) {
   const char *name = tendon->symbol, *unit = transmission_unit(transmission);
   bool slides = transmission_slides(transmission);
   write_coefficients(writer, tendon);
-  write_output(writer, copy_text(name), unit, transmission_length(transmission),
+  write_output(writer, name, unit, transmission_length(transmission),
                format_text("length of the tendon '%s'", tendon->name));
   if (tendon->armature > 0)
     write_square(writer, tendon, "kinetic", tendon->armature, "armature", slides ? "kg" : "kg.m2", "inertia along");
@@ -95,8 +93,7 @@ void write_coupling(const struct Writer *writer, const struct Coupling *coupling
     if (coupling->coefficient[power] != 0)
       residual =
           format_text("%s - %s*(%s)^%d", residual, power_of(writer, coupling, power), displacement_of(second), power);
-  xmlNodePtr constraint = write_element(writer, "constraint");
-  set_attribute(constraint, "name", robot_symbol(coupling->name));
-  set_attribute(constraint, "unit", copy_text(transmission_unit(&first->transmission)));
-  set_content(constraint, residual);
+  set_content(write_element(writer, "constraint", "name", robot_symbol(coupling->name), "unit",
+                            transmission_unit(&first->transmission), NULL),
+              residual);
 }

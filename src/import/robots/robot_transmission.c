@@ -60,8 +60,7 @@ char *transmission_rate(const struct Transmission *transmission) {
 /* Writes a force on one end of a segment, directed away from the other end. */
 static void write_site_force(const struct Writer *writer, const struct RobotLink *end, const struct RobotLink *other,
                              const char *force) {
-  xmlNodePtr node = write_element(writer, "force");
-  set_attribute(node, "on", copy_text(end->symbol));
+  xmlNodePtr node = write_element(writer, "force", "on", end->symbol, NULL);
   for (int i = 0; i < 3; i++)
     set_attribute(node, axes[i],
                   format_text("%s*(%s.%s - %s.%s)/distance(%s, %s)", force, end->symbol, axes[i], other->symbol,
@@ -78,9 +77,7 @@ static void write_forces(const struct Writer *writer, const struct Transmission 
 }
 
 static void write_joint_force(const struct Writer *writer, const struct RobotJoint *joint, char *force) {
-  xmlNodePtr node = write_element(writer, "force");
-  set_attribute(node, "coordinate", copy_text(joint->leader->symbol));
-  set_content(node, force);
+  set_content(write_element(writer, "force", "coordinate", joint->leader->symbol, NULL), force);
 }
 
 /* Adds an actuator's force to the sum for a joint that limits it, see write_limited_forces(). */
@@ -92,9 +89,7 @@ static void add_actuator_force(struct RobotJoint *joint, char *force) {
 void write_term(const struct Writer *writer, const struct Transmission *transmission, const char *gear,
                 const char *name, char *force, bool is_of_actuator) {
   if (transmission->count > 1 || transmission->site_count > 0) {
-    xmlNodePtr definition = write_element(writer, "define");
-    set_attribute(definition, "name", format_text("%s_force", name));
-    set_content(definition, force);
+    set_content(write_element(writer, "define", "name", format_text("%s_force", name), NULL), force);
     force = format_text("%s_force", name);
   }
   write_forces(writer, transmission, format_text("%s*%s", gear, force));
@@ -132,9 +127,7 @@ static char *write_activation(const struct Writer *writer, const struct Actuator
                     format_text("time constant of the actuator '%s'", actuator->name));
     rate = format_text("(%s - %s)/%s", control, state, time);
   }
-  xmlNodePtr node = write_element(writer, "state");
-  set_attribute(node, "name", state);
-  set_attribute(node, "unit", copy_text(unit));
+  xmlNodePtr node = write_element(writer, "state", "name", state, "unit", unit, NULL);
   set_number(node, "start", actuator->start_activation);
   const char *driven = actuator->dynamics == FILTER ? format_text("%s - %s", control, state) : control;
   char *lower = number(actuator->activation[0]), *upper = number(actuator->activation[1]);
@@ -194,9 +187,8 @@ static void write_load(const struct Writer *writer, const char *kind, const stru
                        const struct RobotLink *frame, int sign, char *const components[3]) {
   if (link == NULL || !carrier_moves(link, writer->options->floats)) return;
   if (components[0] == NULL && components[1] == NULL && components[2] == NULL) return;
-  xmlNodePtr node = write_element(writer, kind);
-  set_attribute(node, "on", copy_text(link->symbol));
-  if (frame != NULL) set_attribute(node, "in", copy_text(frame->symbol));
+  xmlNodePtr node = write_element(writer, kind, "on", link->symbol, NULL);
+  if (frame != NULL) set_attribute(node, "in", frame->symbol);
   for (int i = 0; i < 3; i++)
     if (components[i] != NULL) set_attribute(node, axes[i], format_text("%s%s", sign < 0 ? "-" : "", components[i]));
 }
@@ -204,9 +196,7 @@ static void write_load(const struct Writer *writer, const char *kind, const stru
 /* Writes the force and torque. Beside a force, the torque by force is a parameter, as it is a length. */
 static void write_wrench(const struct Writer *writer, const struct Wrench *wrench, const char *name, char *force) {
   char *forces[3] = {NULL}, *torques[3] = {NULL};
-  xmlNodePtr definition = write_element(writer, "define");
-  set_attribute(definition, "name", format_text("%s_force", name));
-  set_content(definition, force);
+  set_content(write_element(writer, "define", "name", format_text("%s_force", name), NULL), force);
   for (int i = 0; i < 3; i++) {
     if (wrench->force[i] != 0) forces[i] = format_text("%s*%s_force", number(wrench->force[i]), name);
     if (wrench->torque[i] == 0) continue;
@@ -247,9 +237,8 @@ void write_actuator(const struct Writer *writer, const struct Actuator *actuator
     terms.length = format_text("(%s*%s)", gear, transmission_length(transmission));
     terms.rate = format_text("(%s*%s)", gear, transmission_rate(transmission));
   }
-  xmlNodePtr input = write_element(writer, "input");
-  set_attribute(input, "name", name);
-  set_attribute(input, "unit", actuator->dynamics == INTEGRATOR ? format_text("%s.s-1", unit) : copy_text(unit));
+  xmlNodePtr input = write_element(writer, "input", "name", name, "unit",
+                                   actuator->dynamics == INTEGRATOR ? format_text("%s.s-1", unit) : unit, NULL);
   set_number(input, "start", actuator->start);
   set_attribute(input, "description", format_text("control of the actuator '%s'", actuator->name));
   if (actuator->dynamics != WITHOUT_STATE)

@@ -56,17 +56,17 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf->total_mass = mjcf_number(mjcf, node, "settotalmass", mjcf->total_mass);
   mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
-    report_error(mjcf->file.diagnostics, line_of(node), "coordinate=\"%s\" of <compiler> is not read; expected local",
-                 attribute(node, "coordinate"));
+    mjcf_error(mjcf, node, "coordinate=\"%s\" of <compiler> is not read; expected local",
+               attribute(node, "coordinate"));
   if (has_attribute(node, "assetdir") && mjcf->mesh_folder == NULL) mjcf->mesh_folder = attribute(node, "assetdir");
   if (has_attribute(node, "meshdir")) mjcf->mesh_folder = attribute(node, "meshdir");
   const char *sequence = attribute(node, "eulerseq");
   if (sequence == NULL) return;
   if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
   else
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "eulerseq=\"%.60s\" of <compiler> is not valid; expected three of the letters x, y, z, X, Y, Z",
-                 sequence);
+    mjcf_error(mjcf, node,
+               "eulerseq=\"%.60s\" of <compiler> is not valid; expected three of the letters x, y, z, X, Y, Z",
+               sequence);
 }
 
 static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
@@ -86,14 +86,14 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
   if (attribute_is(flag, "gravity", "disable")) memset(mjcf->file.robot->gravity, 0, sizeof(double[3]));
   for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
     if (attribute_is(flag, flags[i], "disable"))
-      report_error(mjcf->file.diagnostics, line_of(flag), "%s=\"disable\" of <flag> is not read; remove it", flags[i]);
+      mjcf_error(mjcf, flag, "%s=\"disable\" of <flag> is not read; remove it", flags[i]);
 }
 
 static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
   mjcf_numbers(mjcf, node, "axis", 3, 3, joint->axis);
   if (make_unit(joint->axis) == 0)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the axis of the joint '%s' has the length 0; expected a direction such as 0 0 1", joint->name);
+    mjcf_error(mjcf, node, "the axis of the joint '%s' has the length 0; expected a direction such as 0 0 1",
+               joint->name);
 }
 
 /* Reads a hinge or slide. Its coordinate is `ref` when its body is as placed. */
@@ -188,8 +188,7 @@ static void read_joints(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain)
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (mjcf_is_joint(child)) add_to_chain(mjcf, child, chain, child == last);
   if (chain->is_free && chain->count > 1)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
+    mjcf_error(mjcf, node, "the body '%s' has a free joint and others; expected the free joint alone", chain->body);
   if (!chain->has_body) mjcf_fix(mjcf, node, chain->parent, chain->body, &chain->placement);
 }
 
@@ -255,8 +254,8 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
       inner = placement_within(outer, &inner);
       read_children(mjcf, child, parent, &inner);
     } else if (mjcf_is_joint(child) && !is_element(node, "body"))
-      report_error(mjcf->file.diagnostics, line_of(child), "a <%s> is in a <%s>; expected it in a <body>",
-                   (const char *)child->name, (const char *)node->name);
+      mjcf_error(mjcf, child, "a <%s> is in a <%s>; expected it in a <body>", (const char *)child->name,
+                 (const char *)node->name);
   }
 }
 

@@ -61,8 +61,8 @@ static void read_general(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *ac
   if (kind == 1) actuator->dynamics = INTEGRATOR;
   if (kind > 1 && constants[0] > 0) set_filter(actuator, constants[0]);
   else if (kind > 1)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the time constant %g of dynprm of <general> is not above 0; expected seconds", constants[0]);
+    mjcf_error(mjcf, node, "the time constant %g of dynprm of <general> is not above 0; expected seconds",
+               constants[0]);
 }
 
 /* The kinds of actuators, with the gain, bias and dynamics that MuJoCo defines for each. */
@@ -87,15 +87,15 @@ static size_t kind_of(xmlNodePtr node) {
 static void reject_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
   if (ratio != 0)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "dampratio=\"%g\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
-                 "MuJoCo's compiled model",
-                 ratio);
+    mjcf_error(mjcf, node,
+               "dampratio=\"%g\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
+               "MuJoCo's compiled model",
+               ratio);
   if (actuator->bias[2] > 0 && actuator->gain[0] == -actuator->bias[1])
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "
-                 "damping itself with its sign: actuator_biasprm[2] of MuJoCo's compiled model",
-                 (const char *)node->name);
+    mjcf_error(mjcf, node,
+               "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "
+               "damping itself with its sign: actuator_biasprm[2] of MuJoCo's compiled model",
+               (const char *)node->name);
 }
 
 /* Returns the attribute that names the joint of an actuator. */
@@ -118,8 +118,8 @@ static struct Wrench *wrench_of(struct Mjcf *mjcf, xmlNodePtr node, const double
   char *link = is_at_site ? mjcf_site(mjcf, attribute(node, "site")) : joint->child_name;
   wrench->names[WRENCH_LINK] = link;
   if (is_at_site && mjcf_placement_of(mjcf, link) == NULL)
-    report_error(mjcf->file.diagnostics, line_of(node), "there is no site '%s' for a <%s>; expected an existing name",
-                 link, (const char *)node->name);
+    mjcf_error(mjcf, node, "there is no site '%s' for a <%s>; expected an existing name", link,
+               (const char *)node->name);
   if (is_at_site) wrench->names[FORCE_AXES] = link;
   if (!is_in_parent) wrench->names[TORQUE_AXES] = link;
   memcpy(wrench->torque, is_ball ? gear : gear + 3, sizeof wrench->torque);
@@ -136,10 +136,10 @@ static struct Wrench *wrench_of(struct Mjcf *mjcf, xmlNodePtr node, const double
 static void check_wrench(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
   const double *bias = actuator->bias, *gain = actuator->gain;
   if (bias[1] == 0 && bias[2] == 0 && gain[1] == 0 && gain[2] == 0) return;
-  report_error(mjcf->file.diagnostics, line_of(node),
-               "<%s> at a site, free joint or ball joint is not read, as its force depends on the motion; expected a "
-               "<motor> there",
-               (const char *)node->name);
+  mjcf_error(mjcf, node,
+             "<%s> at a site, free joint or ball joint is not read, as its force depends on the motion; expected a "
+             "<motor> there",
+             (const char *)node->name);
 }
 
 /* Returns the transmission of a tendon, or of the joint that the element names. */
@@ -166,10 +166,9 @@ static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendo
   double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
   bool is_known = !isnan(lower) && !isnan(upper);
   if (!is_known || !isnan(limits[0])) {
-    report_error(mjcf->file.diagnostics, line_of(node), "inheritrange of <%s> is %s %srange%s",
-                 (const char *)node->name,
-                 is_known ? "beside a" : "a share of the range of its joint or tendon, which has none; expected",
-                 prefix, is_known ? "; expected one of them" : "");
+    mjcf_error(mjcf, node, "inheritrange of <%s> is %s %srange%s", (const char *)node->name,
+               is_known ? "beside a" : "a share of the range of its joint or tendon, which has none; expected", prefix,
+               is_known ? "; expected one of them" : "");
     return;
   }
   double middle = (lower + upper) / 2, half = share * (upper - lower) / 2;
@@ -183,8 +182,8 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
   bool acts_in_space = actuator->wrench != NULL || actuator->transmission.site_count > 0;
   for (size_t i = 0; i < robot->joint_count && acts_in_space; i++)
     if (!isnan(robot->joints[i]->actuator_limits[0])) {
-      report_error(
-          mjcf->file.diagnostics, line_of(node),
+      mjcf_error(
+          mjcf, node,
           "the actuator '%s' acts at a site or along a <spatial> tendon, and the joint '%s' has an actuatorfrcrange; "
           "expected forcerange of the actuators in its place",
           actuator->name, robot->joints[i]->name);

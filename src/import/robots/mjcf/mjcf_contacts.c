@@ -46,12 +46,11 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
                                 .type = (unsigned)(long)mjcf_number(mjcf, node, "contype", 1),
                                 .affinity = (unsigned)(long)mjcf_number(mjcf, node, "conaffinity", 1)};
   if (contact.friction < 0)
-    report_error(mjcf->file.diagnostics, line_of(node), "friction=\"%g\" of <%s> is negative; expected 0 or more",
-                 contact.friction, (const char *)node->name);
+    mjcf_error(mjcf, node, "friction=\"%g\" of <%s> is negative; expected 0 or more", contact.friction,
+               (const char *)node->name);
   double d = contact.dimensions;
   if (d != 1 && d != 3 && d != 4 && d != 6)
-    report_error(mjcf->file.diagnostics, line_of(node), "condim=\"%g\" of <%s> is not valid; expected 1, 3, 4 or 6", d,
-                 (const char *)node->name);
+    mjcf_error(mjcf, node, "condim=\"%g\" of <%s> is not valid; expected 1, 3, 4 or 6", d, (const char *)node->name);
   return contact;
 }
 

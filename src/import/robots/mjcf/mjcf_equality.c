@@ -29,8 +29,7 @@ static struct RobotJoint *find_joint(struct Mjcf *mjcf, xmlNodePtr node, const c
   const char *name = required_attribute(&mjcf->file, node, attribute_name);
   struct RobotJoint *joint = mjcf_joint(mjcf, name);
   if (joint == NULL && *name != '\0')
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "there is no joint '%s' for an <equality>; expected an existing name", name);
+    mjcf_error(mjcf, node, "there is no joint '%s' for an <equality>; expected an existing name", name);
   return joint;
 }
 
@@ -38,9 +37,8 @@ static struct RobotJoint *find_joint(struct Mjcf *mjcf, xmlNodePtr node, const c
 static void let_mimic(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint, const struct RobotJoint *other,
                       const double coefficient[2]) {
   if (joint->mimicked_name != NULL)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the joint '%s' follows '%s' already; expected one <equality> for each joint1", joint->name,
-                 joint->mimicked_name);
+    mjcf_error(mjcf, node, "the joint '%s' follows '%s' already; expected one <equality> for each joint1", joint->name,
+               joint->mimicked_name);
   joint->mimicked_name = other->name;
   joint->multiplier = coefficient[1];
   joint->offset = joint->start.position[0] + coefficient[0] - coefficient[1] * other->start.position[0];
@@ -81,8 +79,8 @@ static bool read_ends(struct Mjcf *mjcf, xmlNodePtr node, struct Ends *ends) {
     if (names == of_sites) ends->names[i] = mjcf_site(mjcf, ends->names[i]);
     ends->placements[i] = mjcf_placement_of(mjcf, ends->names[i]);
     if (ends->placements[i] == NULL && *ends->names[i] != '\0')
-      report_error(mjcf->file.diagnostics, line_of(node), "there is no %s '%s' for a <%s>; expected an existing name",
-                   names == of_sites ? "site" : "body", ends->names[i], (const char *)node->name);
+      mjcf_error(mjcf, node, "there is no %s '%s' for a <%s>; expected an existing name",
+                 names == of_sites ? "site" : "body", ends->names[i], (const char *)node->name);
   }
   return ends->placements[0] != NULL && ends->placements[1] != NULL;
 }
@@ -125,8 +123,7 @@ static void read_loop(struct Mjcf *mjcf, xmlNodePtr node) {
   if (!read_ends(mjcf, node, &ends)) return;
   bool is_fixed = is_element(node, "weld");
   if (is_fixed && mjcf_number(mjcf, node, "torquescale", 1) == 0)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "torquescale=\"0\" of <weld> constrains no rotation; expected a <connect>");
+    mjcf_error(mjcf, node, "torquescale=\"0\" of <weld> constrains no rotation; expected a <connect>");
   if (!has_attribute(node, "site1") && is_fixed) weld_bodies(mjcf, node, &ends, name);
   else if (!has_attribute(node, "site1")) connect_bodies(mjcf, node, &ends, name);
   APPEND(robot->loops, robot->loop_count,

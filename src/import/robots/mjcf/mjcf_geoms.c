@@ -33,8 +33,8 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
   double length = make_unit(along);
   bool is_round = geom->type == CAPSULE || geom->type == CYLINDER;
   if (!(length > 0) || (!is_round && geom->type != BOX && geom->type != ELLIPSOID)) {
-    report_error(
-        mjcf->file.diagnostics, line_of(node),
+    mjcf_error(
+        mjcf, node,
         "fromto of a <geom> is not valid; expected two different points, of a capsule, cylinder, box or ellipsoid");
     return;
   }
@@ -56,8 +56,8 @@ static struct Geom read_geom(struct Mjcf *mjcf, xmlNodePtr node) {
   place_between(mjcf, node, &geom);
   for (int i = 0; i < needed[geom.type] && mjcf->file.diagnostics->errors == errors; i++)
     if (!(geom.size[i] > 0))
-      report_error(mjcf->file.diagnostics, line_of(node), "a <geom> of type %s has a size of %g; expected %d above 0",
-                   geom_types[geom.type], geom.size[i], needed[geom.type]);
+      mjcf_error(mjcf, node, "a <geom> of type %s has a size of %g; expected %d above 0", geom_types[geom.type],
+                 geom.size[i], needed[geom.type]);
   return geom;
 }
 
@@ -112,10 +112,10 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
     return body_seen_from(&geom->placement, &body);
   }
   if (!is_solid && geom->type != PLANE && (has_mass ? mass : density) > 0)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the inertia of a <geom> of type %s is not known%s%s; expected an <inertial> in its body, as MuJoCo's "
-                 "mj_saveLastXML writes it, or mass=\"0\"",
-                 geom_types[geom->type], has_problem ? ": " : "", has_problem ? geom->mesh->problem : "");
+    mjcf_error(mjcf, node,
+               "the inertia of a <geom> of type %s is not known%s%s; expected an <inertial> in its body, as MuJoCo's "
+               "mj_saveLastXML writes it, or mass=\"0\"",
+               geom_types[geom->type], has_problem ? ": " : "", has_problem ? geom->mesh->problem : "");
   return is_solid ? solid(geom, mass) : (struct RigidBody){.mass = 0};
 }
 
@@ -202,8 +202,7 @@ static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *
   bool is_full = mjcf_numbers(mjcf, node, "fullinertia", 6, 6, moments) > 0;
   if (!is_full) mjcf_numbers(mjcf, node, "diaginertia", 3, 3, moments);
   else if (has_attribute(node, "diaginertia"))
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "<inertial> has diaginertia and fullinertia; expected one of them");
+    mjcf_error(mjcf, node, "<inertial> has diaginertia and fullinertia; expected one of them");
   required_attribute(&mjcf->file, node, "mass");
   for (int i = 0; i < 6; i++) body.tensor.at[row[i]][column[i]] = body.tensor.at[column[i]][row[i]] = moments[i];
   link->body = body_seen_from(&placement, &body);

@@ -32,8 +32,8 @@ static double *read_list(struct Mjcf *mjcf, xmlNodePtr key, const char *name, si
   if (text == NULL) return NULL;
   double *values = allocate(expected + 1, sizeof *values);
   if (parse_numbers(text, expected, values) == expected) return values;
-  report_error(mjcf->file.diagnostics, line_of(key), "%s=\"%.60s\" of <key> is not valid; expected %zu number%s", name,
-               text, expected, expected == 1 ? "" : "s");
+  mjcf_error(mjcf, key, "%s=\"%.60s\" of <key> is not valid; expected %zu number%s", name, text, expected,
+             expected == 1 ? "" : "s");
   return NULL;
 }
 

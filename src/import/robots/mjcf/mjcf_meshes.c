@@ -160,8 +160,7 @@ const struct MjcfMesh *mjcf_mesh(struct Mjcf *mjcf, xmlNodePtr node, const char 
   if (mesh != NULL) return mesh;
   xmlNodePtr asset = find_asset(mjcf, name);
   if (asset == NULL) {
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "there is no <mesh> '%s' in an <asset>; expected an existing name", name);
+    mjcf_error(mjcf, node, "there is no <mesh> '%s' in an <asset>; expected an existing name", name);
     return NULL;
   }
   mesh = allocate(1, sizeof *mesh);

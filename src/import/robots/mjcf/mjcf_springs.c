@@ -41,9 +41,9 @@ void mjcf_note_spring(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joi
   double values[2] = {0};
   if (mjcf_numbers(mjcf, node, "springdamper", 2, 2, values) == 0 || (values[0] == 0 && values[1] == 0)) return;
   if (values[0] <= 0 || values[1] <= 0)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "springdamper=\"%g %g\" of <joint> is not valid; expected a time constant and a damping ratio above 0",
-                 values[0], values[1]);
+    mjcf_error(mjcf, node,
+               "springdamper=\"%g %g\" of <joint> is not valid; expected a time constant and a damping ratio above 0",
+               values[0], values[1]);
   joint->time_constant = values[0];
   joint->damping_ratio = values[1];
 }

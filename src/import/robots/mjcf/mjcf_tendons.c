@@ -26,9 +26,8 @@ static void read_fixed_tendon(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon 
 static void check_line(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *from,
                        const char *to) {
   if (*to == '\0' || strcmp(from, to) != 0) return;
-  report_error(mjcf->file.diagnostics, line_of(node),
-               "the tendon '%s' goes from the site '%s' to itself; expected another site, or this one once",
-               tendon->name, to);
+  mjcf_error(mjcf, node, "the tendon '%s' goes from the site '%s' to itself; expected another site, or this one once",
+             tendon->name, to);
 }
 
 /* Reads the sites of a spatial tendon. */
@@ -144,8 +143,7 @@ const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char 
     if (strcmp(robot->tendons[i].name, name) == 0) return &robot->tendons[i];
     similar_consider(&similar, robot->tendons[i].name);
   }
-  report_error(mjcf->file.diagnostics, line_of(node), "there is no tendon '%s' for a <%s>; %s", name,
-               (const char *)node->name,
-               similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : "expected an existing name");
+  mjcf_error(mjcf, node, "there is no tendon '%s' for a <%s>; %s", name, (const char *)node->name,
+             similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : "expected an existing name");
   return NULL;
 }

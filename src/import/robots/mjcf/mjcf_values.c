@@ -103,11 +103,11 @@ void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node) {
   for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class))
     for (xmlNodePtr found = class->last; found != NULL; found = found->prev) {
       if (!overrides_law(found, node, &is_set_back)) continue;
-      report_error(mjcf->file.diagnostics, line_of(node),
-                   "<%s> inherits the <%s> of a <default>; expected defaults of each kind of actuator in a class of "
-                   "its own",
-                   (const char *)node->name,
-                   is_element(found, (const char *)node->name) ? "motor" : (const char *)found->name);
+      mjcf_error(mjcf, node,
+                 "<%s> inherits the <%s> of a <default>; expected defaults of each kind of actuator in a class of "
+                 "its own",
+                 (const char *)node->name,
+                 is_element(found, (const char *)node->name) ? "motor" : (const char *)found->name);
       return;
     }
 }
@@ -115,22 +115,20 @@ void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node) {
 static void check_class(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
   const char *class = attribute(node, name);
   if (class != NULL && strcmp(class, "main") != 0 && find_class(mjcf->root, class) == NULL)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "there is no class '%s' for %s of <%s>; expected one that a <default class=\"...\"> defines", class,
-                 name, (const char *)node->name);
+    mjcf_error(mjcf, node, "there is no class '%s' for %s of <%s>; expected one that a <default class=\"...\"> defines",
+               class, name, (const char *)node->name);
 }
 
 static void check_default(struct Mjcf *mjcf, xmlNodePtr node) {
   const char *class = attribute(node, "class");
   bool is_outermost = node->parent == mjcf->root;
   if (class == NULL && !is_outermost)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "a <default> in a <default> has no class; expected class=\"...\"");
+    mjcf_error(mjcf, node, "a <default> in a <default> has no class; expected class=\"...\"");
   if (class == NULL || is_outermost) return;
   xmlNodePtr first = find_class(mjcf->root, class);
   if (first != node)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "the class '%s' is already defined on line %ld; expected another name", class, line_of(first));
+    mjcf_error(mjcf, node, "the class '%s' is already defined on line %ld; expected another name", class,
+               line_of(first));
 }
 
 void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node) {
@@ -151,9 +149,8 @@ size_t mjcf_numbers(struct Mjcf *mjcf, xmlNodePtr node, const char *name, size_t
     return count;
   }
   char *amount = least == most ? format_text("%zu", most) : format_text("%zu to %zu", least, most);
-  report_error(mjcf->file.diagnostics, line_of(node), "%s=\"%.60s\" of <%s> is not valid; expected %s", name, text,
-               (const char *)node->name,
-               most == 1 ? "a number such as 2, -0.5 or 1e-3" : format_text("%s numbers", amount));
+  mjcf_error(mjcf, node, "%s=\"%.60s\" of <%s> is not valid; expected %s", name, text, (const char *)node->name,
+             most == 1 ? "a number such as 2, -0.5 or 1e-3" : format_text("%s numbers", amount));
   return 0;
 }
 
@@ -165,8 +162,7 @@ double mjcf_number(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double 
 double mjcf_number_not_negative(struct Mjcf *mjcf, xmlNodePtr node, const char *name, double usual) {
   double value = mjcf_number(mjcf, node, name, usual);
   if (value < 0)
-    report_error(mjcf->file.diagnostics, line_of(node), "%s=\"%g\" of <%s> is negative; expected 0 or more", name,
-                 value, (const char *)node->name);
+    mjcf_error(mjcf, node, "%s=\"%g\" of <%s> is negative; expected 0 or more", name, value, (const char *)node->name);
   return value;
 }
 
@@ -182,8 +178,8 @@ size_t mjcf_word(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const cha
     if (text == NULL || strcmp(text, words[i]) == 0) return i;
     list = format_text("%s%s%s", list, i > 0 ? ", " : "", words[i]);
   }
-  report_error(mjcf->file.diagnostics, line_of(node), "%s=\"%.60s\" of <%s> is not known; expected one of %s", name,
-               text, (const char *)node->name, list);
+  mjcf_error(mjcf, node, "%s=\"%.60s\" of <%s> is not known; expected one of %s", name, text, (const char *)node->name,
+             list);
   return 0;
 }
 
@@ -235,8 +231,8 @@ static size_t orientation_of(struct Mjcf *mjcf, xmlNodePtr node, const char *con
   while (kind < ORIENTATIONS && !has_attribute(node, names[kind])) kind++;
   for (others = kind + 1; others < ORIENTATIONS && !has_attribute(node, names[others]);) others++;
   if (others < ORIENTATIONS)
-    report_error(mjcf->file.diagnostics, line_of(node), "<%s> has %s and %s; expected one of them",
-                 (const char *)node->name, names[kind], names[others]);
+    mjcf_error(mjcf, node, "<%s> has %s and %s; expected one of them", (const char *)node->name, names[kind],
+               names[others]);
   if (kind < ORIENTATIONS) return kind;
   kind = 0;
   while (kind < ORIENTATIONS && mjcf_text(mjcf, node, names[kind]) == NULL) kind++;
@@ -272,9 +268,8 @@ struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node) {
     placement.rotation = rotation_of_z(v);
   }
   if (!is_right)
-    report_error(mjcf->file.diagnostics, line_of(node),
-                 "%s=\"%s\" of <%s> gives no direction; expected vectors that are not 0, and not parallel", names[kind],
-                 mjcf_text(mjcf, node, names[kind]), (const char *)node->name);
+    mjcf_error(mjcf, node, "%s=\"%s\" of <%s> gives no direction; expected vectors that are not 0, and not parallel",
+               names[kind], mjcf_text(mjcf, node, names[kind]), (const char *)node->name);
   return placement;
 }
 
@@ -287,19 +282,18 @@ void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const ch
   if (word == 2 || (word == 0 && !(is_given && mjcf->has_automatic_limits))) return;
   if (read[0] < read[1]) memcpy(limits, read, sizeof read);
   else
-    report_error(mjcf->file.diagnostics, line_of(node), "%s of <%s> is from %g to %g; expected the lower one first",
-                 range, (const char *)node->name, read[0], read[1]);
+    mjcf_error(mjcf, node, "%s of <%s> is from %g to %g; expected the lower one first", range, (const char *)node->name,
+               read[0], read[1]);
 }
 
 void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy) {
-  report_error(mjcf->file.diagnostics, line_of(node), "<%s> is not read, and would change the motion; expected %s",
-               (const char *)node->name, remedy);
+  mjcf_error(mjcf, node, "<%s> is not read, and would change the motion; expected %s", (const char *)node->name,
+             remedy);
 }
 
 void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
   const char *text = mjcf_text(mjcf, node, name);
   if (text == NULL || requests_nothing(text)) return;
-  report_error(mjcf->file.diagnostics, line_of(node),
-               "%s=\"%.60s\" of <%s> is not read, and would change the motion; remove it", name, text,
-               (const char *)node->name);
+  mjcf_error(mjcf, node, "%s=\"%.60s\" of <%s> is not read, and would change the motion; remove it", name, text,
+             (const char *)node->name);
 }

@@ -53,6 +53,9 @@ struct Mjcf {
   struct Names *placements; /* bodies and sites -> struct Placement in the world, with all joints at their ref */
 };
 
+/* Reports an error on the line of an element. */
+#define mjcf_error(mjcf, node, ...) report_error((mjcf)->file.diagnostics, line_of(node), __VA_ARGS__)
+
 /* Returns an attribute of the element or of its classes, innermost first; NULL if none has it. */
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
 
