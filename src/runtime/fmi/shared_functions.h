@@ -13,6 +13,13 @@
 #include "fmi/saved_state.h"
 #include "fmi/simulation.h"
 
+/* Defines a function of this class, with these parameters, that does no more than a call. */
+#define FMI_FUNCTION(name, class, call, ...)                                                                           \
+  FMI(Status) FMI(name)(__VA_ARGS__) {                                                                                 \
+    struct Instance *instance = enter(c, class, __func__);                                                             \
+    return instance == NULL ? FMI(Error) : status_of(call);                                                            \
+  }
+
 /* --- Life ---------------------------------------------------------------------------------------------------------- */
 
 FMI(Status) FMI(SetDebugLogging)(void *c, FMI(Boolean) loggingOn, size_t nCategories, const char *const names[]) {
@@ -40,43 +47,19 @@ FMI(Status) FMI(Reset)(void *c) {
   return FMI(OK);
 }
 
-FMI(Status) FMI(EnterContinuousTimeMode)(void *c) {
-  struct Instance *instance = enter(c, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, __func__);
-  if (instance == NULL) return FMI(Error);
-  return status_of(exchange_leave_event_mode(instance));
-}
+FMI_FUNCTION(EnterContinuousTimeMode, FUNCTION_ENTER_CONTINUOUS_TIME_MODE, exchange_leave_event_mode(instance), void *c)
 
 /* --- States, saved and restored ------------------------------------------------------------------------------------ */
 
-FMI(Status) FMI(GetFMUState)(void *c, void **state) {
-  struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_get(instance, state));
-}
-
-FMI(Status) FMI(SetFMUState)(void *c, void *state) {
-  struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_set(instance, state));
-}
-
-FMI(Status) FMI(FreeFMUState)(void *c, void **state) {
-  struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_free(instance, state));
-}
-
-FMI(Status) FMI(SerializedFMUStateSize)(void *c, void *state, size_t *size) {
-  struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_size(instance, state, size));
-}
-
-FMI(Status) FMI(SerializeFMUState)(void *c, void *state, FMI(Byte) bytes[], size_t size) {
-  struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_write(instance, state, bytes, size));
-}
-
-FMI(Status) FMI(DeserializeFMUState)(void *c, const FMI(Byte) bytes[], size_t size, void **state) {
-  struct Instance *instance = enter(c, FUNCTION_FMU_STATE, __func__);
-  return instance == NULL ? FMI(Error) : status_of(saved_state_read(instance, bytes, size, state));
-}
+FMI_FUNCTION(GetFMUState, FUNCTION_FMU_STATE, saved_state_get(instance, state), void *c, void **state)
+FMI_FUNCTION(SetFMUState, FUNCTION_FMU_STATE, saved_state_set(instance, state), void *c, void *state)
+FMI_FUNCTION(FreeFMUState, FUNCTION_FMU_STATE, saved_state_free(instance, state), void *c, void **state)
+FMI_FUNCTION(SerializedFMUStateSize, FUNCTION_FMU_STATE, saved_state_size(instance, state, size), void *c, void *state,
+             size_t *size)
+FMI_FUNCTION(SerializeFMUState, FUNCTION_FMU_STATE, saved_state_write(instance, state, bytes, size), void *c,
+             void *state, FMI(Byte) bytes[], size_t size)
+FMI_FUNCTION(DeserializeFMUState, FUNCTION_FMU_STATE, saved_state_read(instance, bytes, size, state), void *c,
+             const FMI(Byte) bytes[], size_t size, void **state)
 
 /* --- Model exchange ------------------------------------------------------------------------------------------------ */
 
@@ -96,34 +79,16 @@ FMI(CompletedIntegratorStep)
   return status_of(status);
 }
 
-FMI(Status) FMI(SetTime)(void *c, double time) {
-  struct Instance *instance = enter(c, FUNCTION_SET_TIME, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_set_time(instance, time));
-}
-
-FMI(Status) FMI(SetContinuousStates)(void *c, const double states[], size_t count) {
-  struct Instance *instance = enter(c, FUNCTION_SET_CONTINUOUS_STATES, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_set_states(instance, states, count));
-}
-
-FMI(Status) FMI(GetContinuousStates)(void *c, double states[], size_t count) {
-  struct Instance *instance = enter(c, FUNCTION_GET_CONTINUOUS, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_get_states(instance, states, count));
-}
-
-FMI(Status) FMI(GetContinuousStateDerivatives)(void *c, double derivatives[], size_t count) {
-  struct Instance *instance = enter(c, FUNCTION_GET_CONTINUOUS, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_get_derivatives(instance, derivatives, count));
-}
-
-FMI(Status) FMI(GetNominalsOfContinuousStates)(void *c, double nominals[], size_t count) {
-  struct Instance *instance = enter(c, NOMINALS, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_get_nominals(instance, nominals, count));
-}
-
-FMI(Status) FMI(GetEventIndicators)(void *c, double indicators[], size_t count) {
-  struct Instance *instance = enter(c, FUNCTION_GET_CONTINUOUS, __func__);
-  return instance == NULL ? FMI(Error) : status_of(exchange_get_event_indicators(instance, indicators, count));
-}
+FMI_FUNCTION(SetTime, FUNCTION_SET_TIME, exchange_set_time(instance, time), void *c, double time)
+FMI_FUNCTION(SetContinuousStates, FUNCTION_SET_CONTINUOUS_STATES, exchange_set_states(instance, states, count), void *c,
+             const double states[], size_t count)
+FMI_FUNCTION(GetContinuousStates, FUNCTION_GET_CONTINUOUS, exchange_get_states(instance, states, count), void *c,
+             double states[], size_t count)
+FMI_FUNCTION(GetContinuousStateDerivatives, FUNCTION_GET_CONTINUOUS,
+             exchange_get_derivatives(instance, derivatives, count), void *c, double derivatives[], size_t count)
+FMI_FUNCTION(GetNominalsOfContinuousStates, NOMINALS, exchange_get_nominals(instance, nominals, count), void *c,
+             double nominals[], size_t count)
+FMI_FUNCTION(GetEventIndicators, FUNCTION_GET_CONTINUOUS, exchange_get_event_indicators(instance, indicators, count),
+             void *c, double indicators[], size_t count)
 
 #endif
