@@ -41,6 +41,12 @@ static const double rounded_acceleration = 1e-12;
 /* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
 static const double jamming_share = 1e-3;
 
+/*
+ * A contact cannot move if the held contacts and frictions leave less than this fraction of its W_ii. It is the squared
+ * sine of the angle between them. Where the contact follows from them, it is rounding.
+ */
+static const double smallest_share_of_motion = 1e-10;
+
 /* Number of solutions, as messages say it; NULL if the motion continues. */
 static const char *const numbers_of_solutions[] = {
     [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
@@ -141,6 +147,11 @@ static void fill_resting(const struct Resolution *resolution, struct RestingCont
       if (contact_is_closed(resolution, impulses->member[j])) forces->free[i] -= s * force / resting->unit[j];
     }
   }
+  forces->lasts = resolution->occasion != AT_START;
+  for (size_t j = 0; j < n; j++) {
+    bool is_closed = contact_is_closed(resolution, impulses->member[j]);
+    forces->present[j] = is_closed ? contact_force(resolution, impulses->member[j]) / resting->unit[j] : 0.0;
+  }
 }
 
 void contact_forces_report_fixed(const struct Resolution *resolution, size_t contact) {
@@ -192,25 +203,54 @@ static void free_resting(const struct Resolution *resolution, struct RestingCont
 }
 
 /*
- * Sets up the problem. False, with *problem NULL, if no force changes the gap of a contact; with the reason, if M is
- * singular or memory is missing.
+ * Deselects the contacts that cannot move, as those that stick keep their gaps constant. Their forces are not the
+ * subject of this problem. Sets *drops if there are any. False if M is singular.
+ */
+static bool drop_fixed_contacts(struct Resolution *resolution, const struct ContactImpulses *impulses, bool *drops) {
+  double *own = scratch_take(resolution->instance, SCRATCH_RESTING, impulses->contact_count * sizeof *own);
+  bool done = own != NULL && contact_impulses_find_own(resolution, impulses, own);
+  if (own == NULL) solver_is_out_of_memory(resolution->instance);
+  *drops = false;
+  for (size_t i = 0; i < impulses->contact_count && done; i++) {
+    if (impulses->delassus[i * impulses->count + i] > smallest_share_of_motion * own[i]) continue;
+    resolution->takes_part[impulses->member[i]] = 0.0;
+    *drops = true;
+  }
+  if (own != NULL) scratch_return(resolution->instance, SCRATCH_RESTING);
+  return done;
+}
+
+/* Computes the impulses of the selected contacts that can move. False if M is singular or memory is missing. */
+static bool find_movable_contacts(struct Resolution *resolution, struct ContactImpulses *impulses) {
+  bool drops;
+  if (!find_contact_impulses(resolution, impulses)) return false;
+  if (!drop_fixed_contacts(resolution, impulses, &drops)) {
+    contact_impulses_free(resolution, impulses);
+    return false;
+  }
+  if (!drops) return true;
+  contact_impulses_free(resolution, impulses);
+  return find_contact_impulses(resolution, impulses);
+}
+
+/*
+ * Sets up the problem. False, with *problem NULL, if no selected contact can move; with the reason, if M is singular or
+ * memory is missing.
  */
 static bool create_resting(struct Resolution *resolution, struct RestingContacts *resting, const char **problem) {
   *resting = (struct RestingContacts){0};
   *problem = NULL;
-  if (!find_contact_impulses(resolution, &resting->impulses)) {
+  if (!find_movable_contacts(resolution, &resting->impulses)) {
     *problem = no_contact_impulses;
     return false;
   }
   size_t n = resting->impulses.contact_count, bytes = resting_forces_bytes(n);
-  resting->block = scratch_take(resolution->instance, SCRATCH_RESTING, bytes + n * sizeof(double));
-  bool moves = true;
-  for (size_t i = 0; i < n; i++) moves &= resting->impulses.delassus[i * resting->impulses.count + i] > DBL_MIN;
+  if (n > 0) resting->block = scratch_take(resolution->instance, SCRATCH_RESTING, bytes + n * sizeof(double));
   if (resting->block == NULL) {
-    solver_is_out_of_memory(resolution->instance);
-    *problem = no_contact_impulses;
-  }
-  if (resting->block == NULL || !moves) {
+    if (n > 0) {
+      solver_is_out_of_memory(resolution->instance);
+      *problem = no_contact_impulses;
+    }
     free_resting(resolution, resting);
     return false;
   }

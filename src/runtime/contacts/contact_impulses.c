@@ -110,21 +110,30 @@ static size_t constraint_of(const struct ContactImpulses *impulses, const struct
 }
 
 /*
+ * Computes the change of the velocities by the unit impulse of a constraint in response, then the generalized impulse,
+ * each of n numbers. impulse is 0. False if M is singular.
+ */
+static bool respond_to_unit(struct Resolution *resolution, size_t constraint, double *impulse, double *response) {
+  struct Instance *instance = resolution->instance;
+  struct Point point = solver_point(instance, resolution->time, resolution->state);
+  double *unit = &impulse[lagrangian.coordinate_count + constraint];
+  *unit = 1.0;
+  instance->singular = lagrangian.constraints.respond(&point, impulse, response);
+  *unit = 0.0;
+  return instance->singular == 0 && are_finite(response, 2 * lagrangian.coordinate_count);
+}
+
+/*
  * Computes the effect of each unit impulse: the generalized impulses in jacobian_row (count rows, those of J), and M^-1
  * J^T in impulses->velocities; then their products W. False if M is singular.
  */
 static bool respond_to_impulses(struct Resolution *resolution, struct ContactImpulses *impulses, double *jacobian_row,
                                 double *impulse, double *response) {
-  struct Instance *instance = resolution->instance;
   size_t n = lagrangian.coordinate_count;
-  if (evaluate_prepare(instance) != STATUS_DONE) return false;
-  struct Point point = solver_point(instance, resolution->time, resolution->state);
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
   for (size_t row = 0; row < impulses->count; row++) {
-    size_t slot = n + constraint_of(impulses, resolution->switches, row);
-    impulse[slot] = 1.0;
-    instance->singular = lagrangian.constraints.respond(&point, impulse, response);
-    impulse[slot] = 0.0;
-    if (instance->singular != 0 || !are_finite(response, 2 * n)) return false;
+    if (!respond_to_unit(resolution, constraint_of(impulses, resolution->switches, row), impulse, response))
+      return false;
     memcpy(impulses->velocities + row * n, response, n * sizeof *response);
     memcpy(jacobian_row + row * n, response + n, n * sizeof *response);
   }
@@ -189,7 +198,8 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
   impulses->delassus = jacobian_row + count * n;
   impulses->rate = impulses->delassus + count * count;
   impulses->coefficient = impulses->rate + count;
-  double *force = impulses->coefficient + frictions * contacts, *response = force + rows, *value = response + 2 * n;
+  impulses->work = impulses->coefficient + frictions * contacts;
+  double *force = impulses->work, *response = force + rows, *value = response + 2 * n;
   impulses->member = (size_t *)(value + values);
   size_t next = 0;
   for (size_t i = 0; i < switches->contact_count; i++)
@@ -203,6 +213,25 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
   }
   contact_impulses_free(resolution, impulses);
   return false;
+}
+
+bool contact_impulses_find_own(struct Resolution *resolution, const struct ContactImpulses *impulses, double *own) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t n = lagrangian.coordinate_count;
+  bool changed = resolution->changed;
+  resolution_keep_modes(resolution);
+  for (size_t i = 0; i < switches->contact_count; i++) set_contact(resolution, i, false);
+  for (size_t i = 0; i < switches->friction_count; i++) set_friction(resolution, i, 1.0);
+  double *impulse = impulses->work, *response = impulse + n + lagrangian.constraints.count;
+  bool done = evaluate_prepare(resolution->instance) == STATUS_DONE;
+  for (size_t i = 0; i < impulses->contact_count && done; i++) {
+    done = respond_to_unit(resolution, constraint_of(impulses, switches, i), impulse, response);
+    own[i] = 0.0;
+    for (size_t k = 0; k < n; k++) own[i] += response[n + k] * response[k];
+  }
+  resolution_restore_modes(resolution);
+  resolution->changed = changed;
+  return done;
 }
 
 void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses) {

@@ -19,6 +19,7 @@ struct ContactImpulses {
   size_t deciding_count; /* leading rows on whose impulses friction limits depend: those of the contacts */
   double *coefficient;   /* friction_count rows: friction limit by a unit impulse of each of them */
   double *given;         /* friction limits without them; NULL for none */
+  double *work;          /* an impulse of 0 for each coordinate and constraint, then its response */
   void *block;
 };
 
@@ -28,6 +29,12 @@ struct ContactImpulses {
  */
 bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses);
 void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses);
+
+/*
+ * Computes W_ii of each contact alone: with all contacts open and all frictions sliding. own: contact_count numbers.
+ * Restores the modes. False if M is singular.
+ */
+bool contact_impulses_find_own(struct Resolution *resolution, const struct ContactImpulses *impulses, double *own);
 
 /* True if the contact is closed in the present modes. */
 static inline bool contact_is_closed(const struct Resolution *resolution, size_t contact) {

@@ -5,6 +5,8 @@
  * n <= COMBINED_LIMIT contacts. F of an active set follows from a = 0 on it, by elimination, at a cost of O(2^n
  * n^3). Active sets with a singular matrix are skipped. Solutions with equal accelerations count as one motion. In
  * larger groups Lemke's method finds one solution, if any; whether there are others stays unknown.
+ *
+ * Where there are several, the present forces go on during a motion if they are stable.
  */
 #include "contacts/resting_forces.h"
 
@@ -29,13 +31,14 @@ static size_t work_count(size_t count) {
 }
 
 size_t resting_forces_bytes(size_t count) {
-  return (count * count + 5 * count + work_count(count)) * sizeof(double) + count * sizeof(size_t);
+  return (count * count + 6 * count + work_count(count)) * sizeof(double) + count * sizeof(size_t);
 }
 
 struct RestingForces resting_forces_in(void *block, size_t count) {
   struct RestingForces resting = {.count = count, .s = block};
   resting.free = resting.s + count * count;
-  resting.found = resting.free + count;
+  resting.present = resting.free + count;
+  resting.found = resting.present + count;
   resting.found_force = resting.found + count;
   resting.force = resting.found_force + count;
   resting.motion = resting.force + count;
@@ -172,10 +175,51 @@ static bool find_by_pivoting(const struct RestingForces *resting, double size) {
   return is_solution(resting, size);
 }
 
+/*
+ * Follows the forces of contacts that yield and damp, dF/dt = -(free + S F) with F >= 0, by Euler's steps to rest. False
+ * if they do not come to rest at a solution. Stores its accelerations in motion.
+ */
+static bool relax_forces(const struct RestingForces *resting, double size) {
+  const int steps = 20000; /* enough where the eigenvalues of S exceed 1e-3 of its largest element */
+  const double rest = 1e-3 * rounded_force;
+  size_t n = resting->group_count;
+  double largest = 0.0, *next = resting->work, change = INFINITY;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++) largest = fmax(largest, fabs(between(resting, i, j)));
+  double step = 1.0 / (largest * (double)n);
+  for (int k = 0; k < steps && change > rest * size; k++) {
+    change = 0.0;
+    for (size_t i = 0; i < n; i++) {
+      double rate = resting->free[resting->group[i]], force = resting->force[resting->group[i]];
+      for (size_t j = 0; j < n; j++) rate += between(resting, i, j) * resting->force[resting->group[j]];
+      next[i] = fmax(force - step * rate, 0.0);
+      change = fmax(change, fabs(next[i] - force));
+    }
+    for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = next[i];
+  }
+  return is_solution(resting, size);
+}
+
+/*
+ * True if the present forces are stable under compliance: after a small change they return to the same motion (P. E.
+ * Dupont and S. P. Yamajako: Stability of frictional contact in constrained rigid-body dynamics, IEEE Transactions on
+ * Robotics and Automation 13, 1997). Then the motion continues, although there may be other solutions.
+ */
+static bool is_stable(const struct RestingForces *resting, double size) {
+  const double nudge = 1e-3;
+  for (size_t i = 0; i < resting->group_count; i++)
+    resting->force[resting->group[i]] = resting->present[resting->group[i]];
+  if (!is_solution(resting, size)) return false;
+  note_solution(resting);
+  for (size_t i = 0; i < resting->group_count; i++)
+    resting->force[resting->group[i]] *= i % 2 == 0 ? 1.0 + nudge : 1.0 - nudge;
+  return relax_forces(resting, size) && is_same_motion(resting, size);
+}
+
 static enum RestingSolutions solve_group(const struct RestingForces *resting, bool is_solved, double size) {
-  bool is_one = is_surely_one(resting);
-  if (is_solved && is_one) return ONE_MOTION;
-  if (resting->group_count <= COMBINED_LIMIT) return count_motions(resting, size);
+  bool is_one = is_surely_one(resting), is_small = resting->group_count <= COMBINED_LIMIT;
+  if (is_solved && (is_one || (is_small && resting->lasts && is_stable(resting, size)))) return ONE_MOTION;
+  if (is_small) return count_motions(resting, size);
   if (!is_solved && !find_by_pivoting(resting, size)) return is_one ? NO_MOTION : PERHAPS_NONE;
   if (!is_solved) note_solution(resting);
   return is_one ? ONE_MOTION : PERHAPS_OTHERS;

@@ -8,7 +8,9 @@
 /* The problem, with S by rows; it is scaled such that its diagonal is 1 without friction. */
 struct RestingForces {
   size_t count;
+  bool lasts; /* the motion has led to the present forces; false at the start */
   double *s, *free;
+  double *present;             /* the present forces; 0 for open contacts */
   double *found, *found_force; /* accelerations and forces of the first solution */
   double *force, *motion;      /* of the present trial: forces, accelerations */
   double *work;
@@ -32,8 +34,9 @@ double largest_free_acceleration(const struct RestingForces *resting);
 
 /*
  * Determines whether the solution exists and is unique in its accelerations. is_solved: the present forces are a
- * solution. Else the first solution is stored in found and found_force. Groups of up to 12 contacts are enumerated up
- * to a second solution. In larger groups Lemke's method finds one, and a sufficient condition decides on uniqueness.
+ * solution. If they last and are stable, they count as unique. Else the first solution is stored in found and
+ * found_force. Groups of up to 12 contacts are enumerated up to a second solution. In larger groups Lemke's method finds
+ * one, and a sufficient condition decides on uniqueness.
  */
 enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved);
 
