@@ -26,19 +26,23 @@ FLOOR = f"""{free("a", (0, 0, 0.3), BOX)}<shape name="floor" type="plane"/>{CONT
 PLATE = """<coordinate name="h" velocity="vh" unit="m"/><coordinate name="p" velocity="wp" unit="rad"/>
   <frame name="plate"><translate z="h"/><rotate axis="y" angle="p"/></frame><body name="board" in="plate" mass="5" Ixx="1" Iyy="1" Izz="1"/>
   <potential>50*h^2 + 200*p^2</potential>"""
+AT_WALL = f"""{free("a", (-0.4, -0.4, 0.1), 'type="box" sizeX="0.2" sizeY="0.2" sizeZ="0.2"')}<shape name="floor" type="plane"/>
+  <frame name="side"><translate x="-0.5"/><rotate axis="y" angle="pi/2"/></frame><shape name="wall" in="side" type="plane"/>
+  {CONTACT.format("c", "aShape", "floor")}{CONTACT.format("d", "aShape", "wall")}
+  <parameter name="Fx" start="0" unit="N/s"/><parameter name="Fy" start="0" unit="N/s"/><parameter name="Fz" start="0" unit="N/s"/>
+  <parameter name="height" start="0" unit="m"/><point name="pushed" in="a" z="height"/><force on="pushed" x="Fx*time" y="Fy*time" z="Fz*time"/>
+  <state name="given" unit="J" rate="time*(Fx*der(pushed.x) + Fy*der(pushed.y) + Fz*der(pushed.z))"/>"""
 TEXTS = {
     "ThrownBox": FLOOR,
     "BoxOnPlate": PLATE + FLOOR.replace('name="floor"', 'name="floor" in="plate"'),
     "PushedCylinder": f"""<parameter name="rate" start="2" unit="N/s"/>{free("a", (0, 0, 0.1), 'type="cylinder" radius="0.06" length="0.2"')}
   <point name="top" in="a" z="0.02"/><shape name="floor" type="plane"/>{CONTACT.format("c", "aShape", "floor")}
   <force on="top" x="rate*time" y="0.3*rate*time"/>""",
-    # Four corners on the floor and four at the wall: where some stick, others cannot part.
-    "BoxAtWall": f"""{free("a", (-0.4, 0, 0.1), 'type="box" sizeX="0.2" sizeY="0.2" sizeZ="0.2"')}<shape name="floor" type="plane"/>
-  <frame name="side"><translate x="-0.5"/><rotate axis="y" angle="pi/2"/></frame><shape name="wall" in="side" type="plane"/>
-  {CONTACT.format("c", "aShape", "floor")}{CONTACT.format("d", "aShape", "wall")}
-  <parameter name="Fx" start="0" unit="N/s"/><parameter name="Fy" start="0" unit="N/s"/><parameter name="Fz" start="0" unit="N/s"/>
-  <parameter name="height" start="0" unit="m"/><point name="pushed" in="a" z="height"/><force on="pushed" x="Fx*time" y="Fy*time" z="Fz*time"/>
-  <state name="given" unit="J" rate="time*(Fx*der(pushed.x) + Fy*der(pushed.y) + Fz*der(pushed.z))"/>""",
+    # Corners on the floor and at one or two walls: where some stick, others cannot part.
+    "BoxAtWall": AT_WALL,
+    "BoxInCorner": AT_WALL
+    + f'''<frame name="back"><translate y="-0.5"/><rotate axis="x" angle="-pi/2"/></frame><shape name="rear" in="back" type="plane"/>
+  {CONTACT.format("r", "aShape", "rear")}''',
     # The distance of ball and box contains a square root, which makes the search for events shorten its intervals.
     "BoxBesideBall": FLOOR + free("b", (0.05, 0, 0.6), 'type="sphere" radius="0.1"') + CONTACT.format("far", "bShape", "aShape"),
 }
@@ -95,13 +99,14 @@ def test_box_on_plate(mu, e, thrown, time):
     run("BoxOnPlate", {"mu": mu, "e": e, "az": 0.4} | velocities(*thrown), time)[0].free()
 
 
-@pytest.mark.parametrize("draw, time", [(16, 2.0), (18, 3.0), (19, 3.0), (22, 2.0)])
-def test_box_at_a_wall(draw, time):
-    """Random growing pushes on a box that touches floor and wall: it gains no energy but that of the pushes."""
+@pytest.mark.parametrize("name, draw, time", [("BoxAtWall", 16, 2.0), ("BoxAtWall", 18, 3.0), ("BoxAtWall", 19, 3.0), ("BoxInCorner", 6, 1.0),
+                                              ("BoxInCorner", 7, 2.5)])  # fmt: skip
+def test_box_at_walls(name, draw, time):
+    """Random growing pushes on a box that touches floor and walls: it gains no energy but that of the pushes."""
     draws = np.random.default_rng(draw)
     values = {"mu": draws.uniform(0.05, 1), "e": draws.choice([0, 0.5]), "Fx": draws.uniform(-8, 4), "Fy": draws.uniform(-8, 4), "Fz": draws.uniform(-3, 2)}
     values |= {"height": draws.uniform(-0.05, 0.1), "avx": draws.uniform(-1, 0.3), "avy": draws.uniform(-1, 0.3)}
-    instance = fmu.Instance("BoxAtWall").initialize(values if draw % 2 == 0 else values | {"avx": 0.0, "avy": 0.0})
+    instance = fmu.Instance(name).initialize(values if draw % 2 == 0 else values | {"avx": 0.0, "avy": 0.0})
     energies = [instance.get("totalEnergy")]
     while instance.time < time - 1e-9:
         instance.step(0.1)

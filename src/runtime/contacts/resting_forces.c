@@ -6,7 +6,8 @@
  * n^3). Active sets with a singular matrix are skipped. Solutions with equal accelerations count as one motion. In
  * larger groups Lemke's method finds one solution, if any; whether there are others stays unknown.
  *
- * Where there are several, the present forces go on during a motion if they are stable.
+ * Where there are several, the present forces go on during a motion if they are stable. If they are no solution, as a
+ * contact closes, they follow compliant contacts to one.
  */
 #include "contacts/resting_forces.h"
 
@@ -200,26 +201,50 @@ static bool relax_forces(const struct RestingForces *resting, double size) {
   return is_solution(resting, size);
 }
 
+static void take_present(const struct RestingForces *resting) {
+  for (size_t i = 0; i < resting->group_count; i++)
+    resting->force[resting->group[i]] = resting->present[resting->group[i]];
+}
+
+/* Returns the smallest of the present forces that press; size if none does. */
+static double smallest_force(const struct RestingForces *resting, double size) {
+  double smallest = size;
+  for (size_t i = 0; i < resting->group_count; i++) {
+    double force = resting->present[resting->group[i]];
+    if (force > rounded_force * size) smallest = fmin(smallest, force);
+  }
+  return smallest;
+}
+
 /*
  * True if the present forces are stable under compliance: after a small change they return to the same motion (P. E.
  * Dupont and S. P. Yamajako: Stability of frictional contact in constrained rigid-body dynamics, IEEE Transactions on
  * Robotics and Automation 13, 1997). Then the motion continues, although there may be other solutions.
  */
 static bool is_stable(const struct RestingForces *resting, double size) {
-  const double nudge = 1e-3;
-  for (size_t i = 0; i < resting->group_count; i++)
-    resting->force[resting->group[i]] = resting->present[resting->group[i]];
+  double nudge = 1e-3 * smallest_force(resting, size);
+  take_present(resting);
   if (!is_solution(resting, size)) return false;
   note_solution(resting);
   for (size_t i = 0; i < resting->group_count; i++)
-    resting->force[resting->group[i]] *= i % 2 == 0 ? 1.0 + nudge : 1.0 - nudge;
+    if (resting->force[resting->group[i]] > nudge) resting->force[resting->group[i]] += i % 2 == 0 ? nudge : -nudge;
   return relax_forces(resting, size) && is_same_motion(resting, size);
+}
+
+/* Counts the motions. During a motion, it takes that of several which the present forces lead to under compliance. */
+static enum RestingSolutions choose_motion(const struct RestingForces *resting, bool is_solved, double size) {
+  enum RestingSolutions solutions = count_motions(resting, size);
+  if (solutions != SEVERAL_MOTIONS || is_solved || !resting->lasts) return solutions;
+  take_present(resting);
+  if (!relax_forces(resting, size)) return solutions;
+  note_solution(resting);
+  return ONE_MOTION;
 }
 
 static enum RestingSolutions solve_group(const struct RestingForces *resting, bool is_solved, double size) {
   bool is_one = is_surely_one(resting), is_small = resting->group_count <= COMBINED_LIMIT;
   if (is_solved && (is_one || (is_small && resting->lasts && is_stable(resting, size)))) return ONE_MOTION;
-  if (is_small) return count_motions(resting, size);
+  if (is_small) return choose_motion(resting, is_solved, size);
   if (!is_solved && !find_by_pivoting(resting, size)) return is_one ? NO_MOTION : PERHAPS_NONE;
   if (!is_solved) note_solution(resting);
   return is_one ? ONE_MOTION : PERHAPS_OTHERS;
