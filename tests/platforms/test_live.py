@@ -14,7 +14,7 @@ import pytest
 
 import fmu
 from building import BUILD, LAGC, ROOT
-from driven_chromium import COLORS_SEEN, PAUSE, browser, opened  # noqa: F401
+from driven_chromium import COLORS_SEEN, browser, opened  # noqa: F401
 from scripts.commands.live import origin_in
 from scripts.library.live_page.page import page_of
 from scripts.library.simulation import settings_of
@@ -304,7 +304,8 @@ def test_energy_bar(browser, page_file):
     with opened(browser, page_file("DoublePendulum")) as page:
         page.click("#play")
         page.wait_for_function("live.history.length > 100")
-        page.evaluate(PAUSE)
+        page.click("#play")
+        page.wait_for_timeout(300)
         names, samples = page.evaluate("live.names"), np.array(page.evaluate("live.history.samples.map(([run]) => Array.from(run))"))
         kinetic, potential = (samples[:, names.index(f"{kind}Energy")] for kind in ("kinetic", "potential"))
         widths = page.locator("#energies i").evaluate_all("parts => parts.map(part => parseFloat(part.style.width))")
@@ -331,7 +332,7 @@ def test_a_section(browser, page_file):
         page.fill("#speed", "1.3")
         page.click("#play")
         page.wait_for_function("live.sections.length >= 5")
-        page.evaluate(PAUSE)
+        page.click("#play")
         places = [page.evaluate("live.names").index(name) for name in ("theta", "omega")]
         times, points = page.evaluate("[live.sections.times, live.sections.samples.map(runs => [...runs[0]])]")
         assert times == pytest.approx([period * (k + 1) for k in range(len(times))], rel=1e-12)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import fmu
-from driven_chromium import PAUSE, browser, opened, page_of_fmu  # noqa: F401
+from driven_chromium import browser, opened, page_of_fmu  # noqa: F401
 from motions import lagrange_fmu  # noqa: F401
 
 G = 9.81
@@ -64,10 +64,11 @@ def test_a_linear_ghost(browser, page_of_fmu):
         page.wait_for_function("live.history.runs === 2")
         page.click("#play")
         page.wait_for_function("live.history.length > 60")
-        page.evaluate(PAUSE)
+        page.click("#play")
         rods = """() => { const at = live.history.length - 1; live.scene.draw(live.history, at);
-          return live.scene.ghostLines.map(({ group, line }) => [line.from, line.to, group.visible, Math.atan2(group.matrix.elements[4], -group.matrix.elements[5])]); }"""
-        drawn, last = page.evaluate(rods), page.evaluate("[...live.history.samples.at(-1)[1]]")
+          return [live.scene.ghostLines.map(({ group, line }) => [line.from, line.to, group.visible, Math.atan2(group.matrix.elements[4], -group.matrix.elements[5])]),
+                  [...live.history.samples[at][1]]]; }"""
+        drawn, last = page.evaluate(rods)  # in one call, since the last samples may still be on their way
         names, times, runs = page.evaluate("[live.names, live.history.times, live.history.samples.map(runs => runs.map(run => [...run]))]")
     rows, states = np.array([run[1] for run in runs]), fmu.states_of("DoublePendulum")
     places = [names.index(state) for state in states]

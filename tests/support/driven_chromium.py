@@ -20,17 +20,6 @@ COLORS_SEEN = """() => {
   return new Set(new Uint32Array(pen.getImageData(0, 0, copy.width, copy.height).data.buffer)).size;
 }"""
 
-# JavaScript: clicks Pause, and resolves once the last samples of the worker have arrived and been drawn.
-PAUSE = """() => new Promise((done) => {
-  const paused = live.handlers.paused;
-  live.handlers.paused = (message) => {
-    live.handlers.paused = paused;
-    paused(message);
-    requestAnimationFrame(() => requestAnimationFrame(done));
-  };
-  document.getElementById("play").click();
-})"""
-
 
 @contextlib.contextmanager
 def chromium():
