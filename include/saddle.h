@@ -31,8 +31,9 @@ enum {
 
 /*
  * Replaces K by L (below the diagonal) and D (on it). coordinate: positive numbers for rows of M, negative ones for
- * constraints, see above. A constraint may depend on those before it, or its row may be 0, as that of an open contact. It gets
- * the pivot -INFINITY, so that its force is 0. Returns 0, or 1 + the first row in which M is not positive definite.
+ * constraints, see above. A constraint may depend on those before it, or its row may be 0, as that of an open contact.
+ * It gets the pivot -INFINITY, so that its force is 0. Returns 0, or 1 + the first row in which M is not positive
+ * definite.
  */
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 

@@ -6,8 +6,8 @@
  * n^3). Active sets with a singular matrix are skipped. Solutions with equal accelerations count as one motion. In
  * larger groups Lemke's method finds one solution, if any; whether there are others stays unknown.
  *
- * Where there are several, the present forces go on during a motion if they are stable. If they are no solution, as a
- * contact closes, they follow compliant contacts to one.
+ * If several solutions exist during a motion, the present forces are kept if they are stable under compliance. If they
+ * are not a solution, because a contact closes, damped compliant contacts lead from them to one.
  */
 #include "contacts/resting_forces.h"
 
@@ -177,7 +177,7 @@ static bool find_by_pivoting(const struct RestingForces *resting, double size) {
 }
 
 /*
- * Follows the forces of contacts that yield and damp, dF/dt = -(free + S F) with F >= 0, by Euler's steps to rest. False
+ * Follows the forces of damped compliant contacts, dF/dt = -(free + S F) with F >= 0, by Euler's steps to rest. False
  * if they do not come to rest at a solution. Stores its accelerations in motion.
  */
 static bool relax_forces(const struct RestingForces *resting, double size) {

@@ -20,6 +20,5 @@ bool shapes_can_touch(const struct Collision *first, const struct Collision *sec
 }
 
 void add_shape_pair(struct Robot *robot, const struct ShapePair *pair) {
-  robot->pairs = make_room(robot->pairs, robot->pair_count, sizeof *robot->pairs);
-  robot->pairs[robot->pair_count++] = *pair;
+  APPEND(robot->pairs, robot->pair_count, *pair);
 }
