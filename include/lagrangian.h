@@ -266,7 +266,7 @@ struct SwitchTable {
   size_t resting_count;
   /* Computes the sums of velocities of RESTING_SUM; NULL without any. */
   void (*resting_sums)(const struct Point *point, const Real *acceleration, Real *sum);
-  void (*find_resting)(struct Resolution *resolution); /* rests/resting_velocities.h; NULL without such velocities */
+  void (*find_resting)(struct Resolution *resolution); /* resting_velocities.h; NULL without such velocities */
   /*
    * Computes the distances of the centres of ball_count balls from the shapes that they touch, and of the axes of
    * capsules, relative to their radii. ball_names: of their compliant contacts, for messages. NULL without any.

@@ -2,7 +2,8 @@
 Check the layers of the C sources.
 
 lagc with the laboratory, the runtime of FMUs, and the ensemble each consist of rooms. A room is a folder of at most a dozen modules, and a module is
-a .c file with its .h file. An #include leads to the same room or to one that is listed before it. Prints violations; no output means there are none.
+a .c file with its .h file. An #include leads to the same room or to one that is listed before it. Calls lead the same
+way, as each function is defined in the room of the header that declares it. Prints violations; no output means there are none.
 """
 
 import re
@@ -67,10 +68,11 @@ RUNTIME = Layers(
     src/runtime/evaluation
     src/runtime/methods
     src/runtime/methods/sundials
+    src/runtime/detection
+    src/runtime/nonsmooth
+    src/runtime/nonsmooth/contacts
+    src/runtime/nonsmooth/planes
     src/runtime/events
-    src/runtime/contacts
-    src/runtime/planes
-    src/runtime/rests
     src/runtime/timing
     src/runtime/stepping
     src/runtime/fmi
@@ -100,6 +102,21 @@ def arrows_from(file, layers):
             yield name, str(found.parent.relative_to(ROOT))
 
 
+def functions_in(file):
+    """Return the names of the functions that are not static: declared in a header, or defined in a source."""
+    ends = ";" if file.suffix == ".h" else " {"
+    return set(re.findall(rf"^(?!static|typedef|extern)[a-z][\w \*]*?(\w+)\([^;{{}}]*\){ends}$", file.read_text(), re.MULTILINE))
+
+
+def stray_functions(rooms):
+    """Yield each function that a room's header declares and a source of another room defines, as (name, header, source)."""
+    files = [(room, file, functions_in(file)) for room in rooms for file in rooms[room]]
+    for room, header, declared in files:
+        for other, source, defined in files:
+            if header.suffix == ".h" and source.suffix == ".c" and room != other:
+                yield from ((name, header, source) for name in declared & defined)
+
+
 def way(arrows, start, end):
     """Return the rooms on a shortest path from `start` to `end`, by breadth-first search; None if there is no path."""
     ways = [[start]]
@@ -124,6 +141,9 @@ def complaints(layers):
             yield f"{room}: {len(modules)} modules; expected at most {MOST_MODULES}, the others in a room of their own"
         if room not in layers.rooms:
             yield f"{room}: no room of scripts/checks/rooms.py; expected it there, behind all that it includes"
+    for name, header, source in stray_functions(rooms):
+        if {"fmi2", "fmi3"} != {header.parent.name, source.parent.name}:  # an FMU has one of these rooms
+            yield f"{source.relative_to(ROOT)} defines {name}(), which {header.relative_to(ROOT)} declares; expected it in one room"
     heights = {room: height for height, room in enumerate(layers.rooms)}
     for start, file, name, to in lines:
         if heights.get(to, 0) > heights.get(start, len(heights)):

@@ -2,7 +2,7 @@
 
 #include <stdlib.h>
 
-#include "events/chebyshev.h"
+#include "detection/chebyshev.h"
 
 bool lane_events_are_needed(void) {
   return single_run_is_needed();
@@ -86,7 +86,7 @@ static Mask evaluate_indicators(struct LaneEvents *events, Lanes time, bool feel
 
 /*
  * Returns the lanes in which a function stays positive, from its values f at the Chebyshev nodes; see
- * search_judge() of events/search.c. The interpolant is the sum of c_k T_k with |T_k| <= 1. It is positive if c_0
+ * search_judge() of detection/search.c. The interpolant is the sum of c_k T_k with |T_k| <= 1. It is positive if c_0
  * exceeds the sum of the other |c_k| and the tail, which bounds the interpolation error. It is also positive
  * between nonnegative ends, if it is monotone or concave by the same bound on a derivative.
  */
@@ -104,7 +104,7 @@ static Mask stay_positive(const Lanes *f) {
   return is_far | (is_resolved & (rises | (is_concave & ends_positive)));
 }
 
-/* Returns the sign of an indicator in the present mode, as indicator_sign() of events/indicators.c. */
+/* Returns the sign of an indicator in the present mode, as indicator_sign() of detection/indicators.c. */
 static Lanes sign_of(const struct LaneSteps *steps, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool is_branch = indicator < switches->branch_count;

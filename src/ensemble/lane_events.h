@@ -1,6 +1,6 @@
 /*
  * Events and constraints of runs in lanes. A vectorized test proves for most steps that no indicator changes its sign,
- * by the criterion of events/search.c. For other lanes, the FMU's own runtime handles one run after another
+ * by the criterion of detection/search.c. For other lanes, the FMU's own runtime handles one run after another
  * (single/single_run.h).
  */
 #ifndef LANE_EVENTS_H

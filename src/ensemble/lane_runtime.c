@@ -2,7 +2,7 @@
 #include "generated.h"
 
 /* NOLINTBEGIN(bugprone-suspicious-include) */
-#include "events/chebyshev.c"
+#include "detection/chebyshev.c"
 #include "support/instructions.c"
 #include "support/ldlt.c"
 #include "support/saddle.c"

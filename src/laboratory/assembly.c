@@ -9,8 +9,8 @@
 
 #include "algebra/functions.h"
 #include "base/memory.h"
-#include "rests/resting_velocities.h"
-#include "events/resolution.h"
+#include "nonsmooth/resting_velocities.h"
+#include "nonsmooth/resolution.h"
 #include "instance/event_laws.h"
 #include "instance/projection.h"
 #include "instance/solver.h"

@@ -2,7 +2,7 @@
  * Forces of sliding contacts, against closed forms: S = 1 - k J, with J all ones, gives -free/(1 - n k) for n closed
  * contacts.
  */
-#include "contacts/resting_forces.h"
+#include "nonsmooth/contacts/resting_forces.h"
 
 #include "expressions.h"
 

@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "evaluation/services.h"
-#include "events/branches.h"
+#include "nonsmooth/branches.h"
 #include "events/exchange.h"
 #include "events/passing.h"
-#include "events/resolution.h"
+#include "nonsmooth/resolution.h"
 
 static bool holds_at_times(const char *constraint) {
   const struct SwitchTable *switches = lagrangian.switches;

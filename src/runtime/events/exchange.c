@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "evaluation/evaluate.h"
-#include "events/indicators.h"
-#include "events/resolve.h"
-#include "events/resolution.h"
+#include "detection/indicators.h"
+#include "nonsmooth/resolve.h"
+#include "nonsmooth/resolution.h"
 #include "instance/projection.h"
 
 /* Steps of Newton's method to a zero. */

@@ -18,12 +18,12 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
-#include "events/continuity.h"
-#include "events/indicators.h"
-#include "events/search.h"
-#include "events/resolve.h"
-#include "events/resolution.h"
-#include "events/search_interval.h"
+#include "nonsmooth/continuity.h"
+#include "detection/indicators.h"
+#include "detection/search.h"
+#include "nonsmooth/resolve.h"
+#include "nonsmooth/resolution.h"
+#include "detection/search_interval.h"
 #include "instance/time_laws.h"
 
 /* Consecutive events within rounding after which the motion stops. */

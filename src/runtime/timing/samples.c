@@ -3,7 +3,7 @@
 #include <float.h>
 #include <math.h>
 
-#include "events/resolution.h"
+#include "nonsmooth/resolution.h"
 #include "instance/time_laws.h"
 #include "timing/time_events.h"
 

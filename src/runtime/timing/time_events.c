@@ -13,8 +13,8 @@
 #include <float.h>
 #include <math.h>
 
-#include "events/chebyshev.h"
-#include "events/search.h"
+#include "detection/chebyshev.h"
+#include "detection/search.h"
 #include "instance/time_laws.h"
 #include "timing/samples.h"
 

@@ -2,7 +2,7 @@
 #ifndef TIME_EVENTS_H
 #define TIME_EVENTS_H
 
-#include "events/resolution.h"
+#include "nonsmooth/resolution.h"
 
 /* Evaluates value[] of the switch table at a time. Values that depend on accelerations are undefined. */
 void time_events_values(struct Resolution *resolution, double time);

@@ -1,0 +1,240 @@
+#include "nonsmooth/contacts/contact_impulses.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "nonsmooth/contacts/planes.h"
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+
+/* Flights shorter than this many units in the last place of the time count as rest: their ends cannot be separated. */
+static const double shortest_flight = 1000.0;
+/* Bounces below this share of the method's error are lost in it, and some methods would sustain them. */
+static const double lost_share = 0.02;
+
+bool is_touching(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  double error_bound = resolution_error_bound(resolution, gap, gap + CONTACT_RATE);
+  return resolution->value[gap] <= error_bound || is_hit(resolution, contact_indicator(resolution->switches, contact));
+}
+
+bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
+  size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
+  if (contact_is_closed(resolution, contact)) return true;
+  return is_touching(resolution, contact) && resolution->value[rate] <= resolution->error_bound[rate];
+}
+
+/* Returns the height of bounces that the method's error hides; 0 if rounding is the only error. */
+static double lost_height(const struct Resolution *resolution) {
+  return resolution->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(resolution->instance);
+}
+
+/*
+ * With the rate u at which the gap opens, and the acceleration -g of the gap, a bounce lasts 2 u / g and has the height
+ * u^2 / (2 g).
+ */
+bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  double fall = -resolution->value[gap + CONTACT_ACCELERATION];
+  double start = resolution->instance->fmu_state->start_time;
+  double time_resolution = DBL_EPSILON * fmax(fabs(resolution->time), fabs(resolution->time - start));
+  if (rate <= resolution->error_bound[gap + CONTACT_RATE] || 2.0 * rate <= shortest_flight * time_resolution * fall)
+    return true;
+  /* Rounding, or more so an importer, leaves the gap slightly negative. A flight that ends below 0 crosses no zero. */
+  double depth = resolution->occasion == IN_EXCHANGE ? 10.0 : 1.0;
+  double lost =
+      fmax(4.0 * resolution_error_bound(resolution, gap, gap + CONTACT_RATE), -depth * resolution->value[gap]);
+  return rate * rate <= 2.0 * fall * fmax(lost, lost_height(resolution));
+}
+
+double largest_contact_force(const struct Resolution *resolution) {
+  double largest = 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (contact_is_closed(resolution, i)) largest = fmax(largest, fabs(contact_force(resolution, i)));
+  return largest;
+}
+
+void set_contact(struct Resolution *resolution, size_t contact, bool is_closed) {
+  resolution_set_mode(resolution, resolution->switches->contacts[contact].mode, is_closed ? 1.0 : 0.0);
+  if (carried_force(resolution, contact) != 0.0)
+    resolution_set_mode(resolution, resolution->switches->contacts[contact].carried, 0.0);
+}
+
+void contact_carry(struct Resolution *resolution, size_t contact, double force) {
+  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
+  set_contact(resolution, contact, true);
+  if (metadata->carried != metadata->mode) resolution_set_mode(resolution, metadata->carried, force);
+}
+
+void set_friction(struct Resolution *resolution, size_t friction, double mode) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t plane = plane_of(switches, friction);
+  if (plane < switches->plane_count) switches->friction_laws->set_plane(resolution, plane, mode != 0.0);
+  else resolution_set_mode(resolution, switches->frictions[friction].mode, mode);
+}
+
+double sliding_share(const struct Resolution *resolution, size_t friction) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t plane = plane_of(switches, friction);
+  double mode = mode_of(resolution, switches->frictions[friction].mode);
+  if (plane == switches->plane_count) return mode;
+  const struct PlaneMetadata *metadata = &switches->planes[plane];
+  double speed = speed_in_plane(resolution, metadata->along);
+  bool has_slip_direction = mode < 0.0 && (speed == 0.0 || mode_of(resolution, metadata->upper) > 0.0);
+  if (has_slip_direction) return mode_of(resolution, metadata->slip_direction[friction - metadata->along]);
+  return resolution->value[friction_slot(switches, friction, FRICTION_VELOCITY)] / speed;
+}
+
+bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
+  return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
+}
+
+/* The caller selects contacts and frictions by takes_part. */
+static bool contact_takes_part(const struct Resolution *resolution, size_t contact) {
+  return resolution->takes_part[contact] != 0.0;
+}
+
+static bool friction_takes_part(const struct Resolution *resolution, size_t friction) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool rests = false;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    rests |= contact_takes_part(resolution, i) && rests_on(switches, friction, i);
+  return rests && !switches->frictions[friction].is_given &&
+         resolution->takes_part[switches->contact_count + friction] != 0.0;
+}
+
+static size_t constraint_of(const struct ContactImpulses *impulses, const struct SwitchTable *switches, size_t row) {
+  size_t member = impulses->member[row];
+  return row < impulses->contact_count ? switches->contacts[member].constraint : switches->frictions[member].constraint;
+}
+
+/*
+ * Computes the change of the velocities by the unit impulse of a constraint in response, then the generalized impulse,
+ * each of n numbers. impulse is 0. False if M is singular.
+ */
+static bool respond_to_unit(struct Resolution *resolution, size_t constraint, double *impulse, double *response) {
+  struct Instance *instance = resolution->instance;
+  struct Point point = solver_point(instance, resolution->time, resolution->state);
+  double *unit = &impulse[lagrangian.coordinate_count + constraint];
+  *unit = 1.0;
+  instance->singular = lagrangian.constraints.respond(&point, impulse, response);
+  *unit = 0.0;
+  return instance->singular == 0 && are_finite(response, 2 * lagrangian.coordinate_count);
+}
+
+/*
+ * Computes the effect of each unit impulse: the generalized impulses in jacobian_row (count rows, those of J), and M^-1
+ * J^T in impulses->velocities; then their products W. False if M is singular.
+ */
+static bool respond_to_impulses(struct Resolution *resolution, struct ContactImpulses *impulses, double *jacobian_row,
+                                double *impulse, double *response) {
+  size_t n = lagrangian.coordinate_count;
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  for (size_t row = 0; row < impulses->count; row++) {
+    if (!respond_to_unit(resolution, constraint_of(impulses, resolution->switches, row), impulse, response))
+      return false;
+    memcpy(impulses->velocities + row * n, response, n * sizeof *response);
+    memcpy(jacobian_row + row * n, response + n, n * sizeof *response);
+  }
+  for (size_t i = 0; i < impulses->count; i++)
+    for (size_t j = 0; j < impulses->count; j++) {
+      double *delassus = &impulses->delassus[i * impulses->count + j];
+      *delassus = 0.0;
+      for (size_t k = 0; k < n; k++) *delassus += jacobian_row[i * n + k] * impulses->velocities[j * n + k];
+    }
+  return true;
+}
+
+/* Computes the friction limits by unit contact forces: differences to the limits without force, as these are linear. */
+static void find_coefficients(struct Resolution *resolution, struct ContactImpulses *impulses, double *force,
+                              double *value) {
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  size_t contacts = impulses->contact_count, n = lagrangian.coordinate_count;
+  for (size_t i = 0; i <= contacts && impulses->friction_count > 0; i++) {
+    if (i < contacts) force[n + constraint_of(impulses, resolution->switches, i)] = 1.0;
+    resolution->switches->switching_values(&point, force, value);
+    if (i < contacts) force[n + constraint_of(impulses, resolution->switches, i)] = 0.0;
+    for (size_t f = 0; f < impulses->friction_count; f++) {
+      double sliding = value[friction_slot(resolution->switches, impulses->member[contacts + f], FRICTION_FORCE)];
+      if (i < contacts) impulses->coefficient[f * contacts + i] = sliding;
+      else /* without any contact force */
+        for (size_t k = 0; k < contacts; k++)
+          impulses->coefficient[f * contacts + k] = fmax(impulses->coefficient[f * contacts + k] - sliding, 0.0);
+    }
+  }
+}
+
+static void find_rates(const struct Resolution *resolution, struct ContactImpulses *impulses) {
+  for (size_t row = 0; row < impulses->count; row++) {
+    size_t member = impulses->member[row];
+    size_t slot = row < impulses->contact_count ? contact_slot(resolution->switches, member, CONTACT_RATE)
+                                                : friction_slot(resolution->switches, member, FRICTION_VELOCITY);
+    impulses->rate[row] = resolution->value[slot];
+    impulses->rounding = fmax(impulses->rounding, resolution->error_bound[slot]);
+  }
+}
+
+bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t n = lagrangian.coordinate_count, rows = n + lagrangian.constraints.count;
+  size_t values = resolution_value_count(switches), contacts = 0, frictions = 0;
+  for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(resolution, i) ? 1 : 0;
+  for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(resolution, i) ? 1 : 0;
+  *impulses = (struct ContactImpulses){.contact_count = contacts,
+                                       .friction_count = frictions,
+                                       .count = contacts + frictions,
+                                       .deciding_count = contacts};
+  size_t count = impulses->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
+  size_t scratch = rows + 2 * n + values;
+  impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES,
+                                 (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
+  if (impulses->block == NULL) {
+    solver_is_out_of_memory(resolution->instance);
+    return false;
+  }
+  impulses->velocities = impulses->block;
+  double *jacobian_row = impulses->velocities + count * n;
+  impulses->delassus = jacobian_row + count * n;
+  impulses->rate = impulses->delassus + count * count;
+  impulses->coefficient = impulses->rate + count;
+  impulses->work = impulses->coefficient + frictions * contacts;
+  double *force = impulses->work, *response = force + rows, *value = response + 2 * n;
+  impulses->member = (size_t *)(value + values);
+  size_t next = 0;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (contact_takes_part(resolution, i)) impulses->member[next++] = i;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (friction_takes_part(resolution, i)) impulses->member[next++] = i;
+  if (respond_to_impulses(resolution, impulses, jacobian_row, force, response)) {
+    find_coefficients(resolution, impulses, force, value);
+    find_rates(resolution, impulses);
+    return true;
+  }
+  contact_impulses_free(resolution, impulses);
+  return false;
+}
+
+bool contact_impulses_find_own(struct Resolution *resolution, const struct ContactImpulses *impulses, double *own) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t n = lagrangian.coordinate_count;
+  bool changed = resolution->changed;
+  resolution_keep_modes(resolution);
+  for (size_t i = 0; i < switches->contact_count; i++) set_contact(resolution, i, false);
+  for (size_t i = 0; i < switches->friction_count; i++) set_friction(resolution, i, 1.0);
+  double *impulse = impulses->work, *response = impulse + n + lagrangian.constraints.count;
+  bool done = evaluate_prepare(resolution->instance) == STATUS_DONE;
+  for (size_t i = 0; i < impulses->contact_count && done; i++) {
+    done = respond_to_unit(resolution, constraint_of(impulses, switches, i), impulse, response);
+    own[i] = 0.0;
+    for (size_t k = 0; k < n; k++) own[i] += response[n + k] * response[k];
+  }
+  resolution_restore_modes(resolution);
+  resolution->changed = changed;
+  return done;
+}
+
+void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses) {
+  scratch_return(resolution->instance, SCRATCH_IMPULSES);
+  impulses->block = NULL;
+}

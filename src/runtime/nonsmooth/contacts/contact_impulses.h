@@ -1,0 +1,96 @@
+/*
+ * Impulses of contacts and frictions: their effects on the velocities, and on one another by the Delassus matrix
+ * W = J M^-1 J^T. Contacts come first, then the frictions that rest on them.
+ */
+#ifndef CONTACT_IMPULSES_H
+#define CONTACT_IMPULSES_H
+
+#include "nonsmooth/resolution.h"
+#include "instance/active_constraints.h"
+
+/* Rows are the contacts that take part, then the frictions on them. delassus is symmetric and positive semidefinite. */
+struct ContactImpulses {
+  size_t contact_count, friction_count, count; /* count: the sum of both */
+  size_t *member;                              /* indices of contacts, then of frictions, in the switch table */
+  double *velocities;                          /* count rows: change of the velocities by each unit impulse */
+  double *delassus;                            /* count rows: Delassus matrix */
+  double *rate;                                /* of the gaps, and the velocities of the frictions */
+  double rounding;                             /* rounding error bound of the rates */
+  size_t deciding_count; /* leading rows on whose impulses friction limits depend: those of the contacts */
+  double *coefficient;   /* friction_count rows: friction limit by a unit impulse of each of them */
+  double *given;         /* friction limits without them; NULL for none */
+  double *work;          /* an impulse of 0 for each coordinate and constraint, then its response */
+  void *block;
+};
+
+/*
+ * Collects the contacts that take part, and the frictions on them that do, at the rates in resolution->value; active
+ * constraints hold. False, and nothing is allocated, if M is singular or memory is missing.
+ */
+bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses);
+void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses);
+
+/*
+ * Computes W_ii of each contact alone: with all contacts open and all frictions sliding. own: contact_count numbers.
+ * Restores the modes. False if M is singular.
+ */
+bool contact_impulses_find_own(struct Resolution *resolution, const struct ContactImpulses *impulses, double *own);
+
+/* True if the contact is closed in the present modes. */
+static inline bool contact_is_closed(const struct Resolution *resolution, size_t contact) {
+  return contact_holds(resolution->instance, contact);
+}
+
+/* Closes or opens a contact. Its constraint has the whole force then. */
+void set_contact(struct Resolution *resolution, size_t contact, bool is_closed);
+
+/* Closes a contact that carries a force, to which its constraint adds what the load lacks. */
+void contact_carry(struct Resolution *resolution, size_t contact, double force);
+
+/* Returns the force that a contact carries beside its constraint. */
+static inline double carried_force(const struct Resolution *resolution, size_t contact) {
+  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
+  return metadata->carried != metadata->mode ? mode_of(resolution, metadata->carried) : 0.0;
+}
+
+/* Returns a part of a contact's values, such as CONTACT_GAP, from the last evaluation. */
+static inline double contact_value(const struct Resolution *resolution, size_t contact, size_t part) {
+  return resolution->value[contact_slot(resolution->switches, contact, part)];
+}
+
+/* Returns the force of a closed contact; negative if it pulls. */
+static inline double contact_force(const struct Resolution *resolution, size_t contact) {
+  size_t constraint = resolution->switches->contacts[contact].constraint;
+  return resolution->acceleration[lagrangian.coordinate_count + constraint] + carried_force(resolution, contact);
+}
+
+/* Returns the largest size of the forces of closed contacts. */
+double largest_contact_force(const struct Resolution *resolution);
+
+/* True if the friction sticks in the present modes. */
+static inline bool friction_sticks(const struct Resolution *resolution, size_t friction) {
+  return friction_holds(resolution->instance, friction);
+}
+
+/* Sets the mode of a friction: 0 for sticking, else the sign of its velocity, which frictions in planes ignore. */
+void set_friction(struct Resolution *resolution, size_t friction, double mode);
+
+/* Returns the factor of the force of a sliding friction: the sign of the velocity, or a component of its direction. */
+double sliding_share(const struct Resolution *resolution, size_t friction);
+
+/* True if the friction follows from the force of the contact. */
+bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
+
+/* True if the gap is at most 0 within rounding, or its zero has been located at this event. */
+bool is_touching(const struct Resolution *resolution, size_t contact);
+
+/* True if the contact is closed, or touches and does not open faster than rounding. */
+bool contact_is_at_rest(const struct Resolution *resolution, size_t contact);
+
+/*
+ * True if a contact that opens at this rate bounces by less than the errors of rounding and of the method, in
+ * height or duration.
+ */
+bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate);
+
+#endif

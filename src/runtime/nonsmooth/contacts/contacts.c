@@ -1,0 +1,583 @@
+/*
+ * Contacts: impacts, rest and parting. An impact takes the touching contact that closes fastest, together with
+ * those as fast within rounding; the other touching contacts are open. Contacts that close because of it have
+ * impacts of their own after it. So a row of touching bodies passes an impulse on (Newton's cradle). After
+ * IMPACT_LIMIT impacts of an event all that touch are taken at once, without restitution. If a contact still closes
+ * then, bodies are crushed, and the motion ends.
+ *
+ * act_once() makes one change a round. It opens contacts that were lifted or part, else takes an impact, else
+ * closes contacts that come to rest. Otherwise it projects out penetrations, or opens the closed contact that pulls
+ * most. resolve.c repeats the rounds until none changes anything.
+ *
+ * was_opened of a contact is 1 after its force or an event has opened it, -1 after contact_forces.c has closed it, and
+ * 0 again after an impact. A contact with a value other than 0 cannot come to rest in this event by itself.
+ */
+#include <float.h>
+#include <math.h>
+
+#include "nonsmooth/contacts/contact_forces.h"
+#include "nonsmooth/contacts/impacts.h"
+#include "nonsmooth/contacts/load_shares.h"
+#include "nonsmooth/contacts/planes.h"
+#include "nonsmooth/contacts/contact_impulses.h"
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "nonsmooth/continuity.h"
+#include "detection/indicators.h"
+#include "nonsmooth/resolution.h"
+
+/*
+ * IMPACT_LIMIT: impacts of an event that are taken one after another. LIFT_LIMIT: projections of penetrated contacts,
+ * in an event and at the start.
+ */
+enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
+
+/* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
+static const double equal_share = 1e-9;
+/*
+ * Penetration that is accepted at the start and after an event sets coordinates, in units of the gap. Relative to its
+ * scale, a fixed coordinate may be moved by as much.
+ */
+static const double largest_penetration = 1e-9;
+
+/* Largest penetration by start values with four digits, as a share of the largest coordinate. */
+static const double rounded_start = 1e-4;
+
+/*
+ * A negative gap of at most this number of rounding error bounds is not located again, since the search allows
+ * FLOOR_IN_ERROR_BOUND.
+ */
+static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
+
+/* Impulses by iteration may leave closing rates below this share of the gap's largest rate in the event. */
+static const double unresolved_share = 1e-6;
+
+/* Smaller speeds have no direction: their squares are close to underflow. */
+static const double least_speed = 1e-150;
+
+static const char penetrated[] = "a contact is penetrated";
+static const char no_impact[] = "an impact of a contact has no solution";
+
+/*
+ * Returns the touching contact that closes fastest; contact_count for none. Rates within rounding count only for the
+ * contact whose zero was located, before its first impact.
+ */
+static size_t find_impact(const struct Resolution *resolution) {
+  size_t found = resolution->switches->contact_count;
+  double fastest = 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    size_t rate = contact_slot(resolution->switches, i, CONTACT_RATE);
+    bool is_open = !contact_is_closed(resolution, i) && resolution->was_opened[i] == 0.0;
+    bool is_hit_first =
+        is_hit(resolution, contact_indicator(resolution->switches, i)) && is_open && resolution->impacts == 0;
+    bool closes = resolution->value[rate] < (is_hit_first ? 0.0 : -resolution->error_bound[rate]);
+    if (!closes || !is_touching(resolution, i) || resolution->value[rate] >= fastest) continue;
+    fastest = resolution->value[rate];
+    found = i;
+  }
+  return found;
+}
+
+/* True if a contact still closes after an impact of all that touch. */
+static bool closes_clearly(const struct Resolution *resolution, size_t contact) {
+  size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
+  return resolution->value[rate] < -unresolved_share * resolution->largest[rate];
+}
+
+static void open_all(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) set_contact(resolution, i, false);
+}
+
+/* Logs a restitution outside of 0 to 1, and returns false. */
+static bool check_restitution(const struct Resolution *resolution, size_t contact) {
+  double restitution = contact_value(resolution, contact, CONTACT_RESTITUTION);
+  if (restitution >= 0.0 && restitution <= 1.0) return true;
+  log_message(resolution->instance, STATUS_DISCARD,
+              "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", resolution->time,
+              resolution->switches->contacts[contact].name, restitution);
+  return false;
+}
+
+/*
+ * Selects the contacts that close as fast as the given one, up to rounding, and all frictions; beyond IMPACT_LIMIT all
+ * touching contacts. False after logging an invalid restitution.
+ */
+static bool choose_hit(struct Resolution *resolution, size_t contact) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t slot = contact_slot(switches, contact, CONTACT_RATE);
+  double fastest = resolution->value[slot], error_bound = resolution->error_bound[slot];
+  bool bounces = resolution->impacts < IMPACT_LIMIT, is_fine = true;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t rate = contact_slot(switches, i, CONTACT_RATE);
+    double slower = resolution->value[rate] - fastest;
+    bool is_tied = slower <= error_bound + resolution->error_bound[rate] - equal_share * fastest;
+    resolution->takes_part[i] = is_touching(resolution, i) && (is_tied || !bounces) ? 1.0 : 0.0;
+    if (resolution->takes_part[i] == 0.0) continue;
+    is_fine &= check_restitution(resolution, i);
+    resolution->was_opened[i] = 0.0;
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) resolution->takes_part[switches->contact_count + i] = 1.0;
+  return is_fine;
+}
+
+/* Lets sticking frictions slide if all their contacts are open. */
+static void let_go(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    bool rests = false, presses = false;
+    for (size_t k = 0; k < switches->contact_count; k++) {
+      if (!rests_on(switches, i, k)) continue;
+      rests = true;
+      presses |= contact_is_closed(resolution, k);
+    }
+    if (!rests || presses || !friction_sticks(resolution, i)) continue;
+    set_friction(resolution, i, 1.0);
+  }
+}
+
+static void let_all_slide(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) set_friction(resolution, i, 1.0);
+}
+
+/*
+ * Lets frictions in planes that do not stick, and have stopped, slip along their last direction. False if values cannot
+ * be evaluated.
+ */
+static bool let_stopped_slip(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (switches->plane_count == 0) return true;
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  switches->switching_values(&point, resolution->acceleration, resolution->value);
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    size_t along = switches->planes[i].along;
+    if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > least_speed))
+      set_friction(resolution, along, 1.0);
+  }
+  return true;
+}
+
+/* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
+static bool take_impact(struct Resolution *resolution, size_t contact) {
+  if (!choose_hit(resolution, contact)) return false;
+  resolution_keep_modes(resolution);
+  let_all_slide(resolution);
+  open_all(resolution);
+  bool done = impacts_take(resolution, resolution->impacts < IMPACT_LIMIT);
+  resolution_restore_modes(resolution);
+  open_all(resolution);
+  let_go(resolution);
+  resolution->jumped = true;
+  resolution->impacts++;
+  return done && let_stopped_slip(resolution);
+}
+
+/* Logs singular equations, which name no contact by themselves; other reasons have been logged. */
+static const char *report_singular_impact(const struct Resolution *resolution, size_t contact) {
+  if (resolution->instance->singular != 0)
+    log_message(resolution->instance, resolution_status(resolution),
+                "time %g: the impact of the contact '%s' has no solution, as the equations of motion are singular "
+                "without contacts; expected masses for all coordinates",
+                resolution->time, resolution->switches->contacts[contact].name);
+  return no_impact;
+}
+
+/* Largest error of an importer's integrator in one step, in units of the largest coordinate. */
+static const double largest_step_error = 1e-4;
+
+/*
+ * True if the bounce is lower than the error of the importer's first step after the impact. The importer would then
+ * find the contact penetrated while it still opens, after this impact and each following one.
+ */
+static bool is_overtaken(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  const double *value = &resolution->value[gap], *error_bound = &resolution->error_bound[gap];
+  bool has_jumped = resolution->jumped || resolution->moved || resolution->switched != NULL || resolution->set_mode;
+  if (resolution->occasion != IN_EXCHANGE || has_jumped || !(value[CONTACT_GAP] < -error_bound[CONTACT_GAP]))
+    return false;
+  double height = 0.5 * value[CONTACT_RATE] * value[CONTACT_RATE] / -value[CONTACT_ACCELERATION];
+  return value[CONTACT_RATE] > error_bound[CONTACT_RATE] &&
+         height <= largest_step_error * largest_scale(resolution->state, 0);
+}
+
+/*
+ * True if a gap that was located to fall has neither rate nor acceleration: higher derivatives close it. An example is
+ * the gap of a body that begins to slip towards an open contact, where its friction reaches the limit.
+ */
+static bool sinks_without_acceleration(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
+  const double *value = &resolution->value[gap], *error_bound = &resolution->error_bound[gap];
+  return is_hit(resolution, contact_indicator(resolution->switches, contact)) &&
+         fabs(value[CONTACT_RATE]) <= error_bound[CONTACT_RATE] &&
+         fabs(value[CONTACT_ACCELERATION]) <= error_bound[CONTACT_ACCELERATION];
+}
+
+/* True if an open contact touches, and would sink, or only make bounces that errors hide. */
+static bool comes_to_rest(const struct Resolution *resolution, size_t contact) {
+  size_t acceleration = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
+  if (resolution->was_opened[contact] != 0.0 || !is_touching(resolution, contact)) return false;
+  if (sinks_without_acceleration(resolution, contact)) return true;
+  if (!(-resolution->value[acceleration] > resolution->error_bound[acceleration])) return false;
+  return is_overtaken(resolution, contact) ||
+         bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
+}
+
+/* Lets sticking frictions slide if an impact has given them a velocity, before the velocities are projected. */
+static void let_moving_slide(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->friction_count && resolution->jumped; i++) {
+    size_t slot = friction_slot(switches, i, FRICTION_VELOCITY);
+    double velocity = resolution->value[slot];
+    if (!friction_sticks(resolution, i) ||
+        fabs(velocity) <= resolution_error_bound(resolution, slot, slot + FRICTION_RATE))
+      continue;
+    set_friction(resolution, i, velocity < 0.0 ? -1.0 : 1.0);
+  }
+}
+
+/* Lets frictions stick that do not slide as the contact comes to rest: the projection of the gap would move them. */
+static void let_stick(struct Resolution *resolution, size_t contact) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    size_t velocity = friction_slot(switches, i, FRICTION_VELOCITY);
+    bool slides = sliding_speed(resolution, i) > resolution->error_bound[velocity];
+    if (rests_on(switches, i, contact) && !slides) set_friction(resolution, i, 0.0);
+  }
+}
+
+/*
+ * True if a touching contact stays with others that come to rest. Rates of a body that comes to lie flat differ by
+ * rounding errors. The last contact does not accelerate by itself, but shares the load. was_opened is ignored: a
+ * contact that pulled before the others came to rest may rest too.
+ */
+static bool rests_with_others(const struct Resolution *resolution, size_t contact) {
+  size_t acceleration = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
+  if (!is_touching(resolution, contact)) return false;
+  if (resolution->value[acceleration] > resolution->error_bound[acceleration]) return false;
+  return bounce_is_lost(resolution, contact, 0.5 * contact_value(resolution, contact, CONTACT_RATE));
+}
+
+static bool close_those(struct Resolution *resolution, bool (*rests)(const struct Resolution *, size_t)) {
+  bool closes = false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    if (contact_is_closed(resolution, i) || !rests(resolution, i)) continue;
+    set_contact(resolution, i, true);
+    let_stick(resolution, i);
+    closes = true;
+  }
+  return closes;
+}
+
+/* Closes all contacts that come to rest, and, in this round and the next, those that stay with them. True if any. */
+static bool close_contacts(struct Resolution *resolution) {
+  bool comes = close_those(resolution, comes_to_rest), shares = comes || resolution->came_to_rest;
+  resolution->came_to_rest = comes;
+  if (!(shares && close_those(resolution, rests_with_others)) && !comes) return false;
+  let_moving_slide(resolution);
+  return true;
+}
+
+static const char *report_rest(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t contact = 0;
+  while (contact + 1 < switches->contact_count && !is_touching(resolution, contact)) contact++;
+  log_message(resolution->instance, resolution_status(resolution),
+              "time %g: no velocities are found with which the contact '%s' can close; expected another position, or "
+              "fewer constraints",
+              resolution->time, switches->contacts[contact].name);
+  return no_impact;
+}
+
+/*
+ * Returns a closed contact that accelerates towards closing although no force changes its gap; contact_count for none.
+ */
+static size_t find_prescribed(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t contact = 0;
+  while (contact < switches->contact_count &&
+         (!contact_is_closed(resolution, contact) ||
+          resolution_moves(resolution, switches->contacts[contact].constraint) ||
+          contact_value(resolution, contact, CONTACT_ACCELERATION) >=
+              -resolution->error_bound[contact_slot(switches, contact, CONTACT_ACCELERATION)]))
+    contact++;
+  return contact;
+}
+
+/* Projects the velocities onto the contacts that have come to rest. NULL, or the reason why that fails. */
+static const char *let_rest(struct Resolution *resolution) {
+  if (!resolution_project_velocities(resolution)) return report_rest(resolution);
+  size_t fixed = find_prescribed(resolution);
+  if (fixed < resolution->switches->contact_count) {
+    contact_forces_report_fixed(resolution, fixed);
+    return no_impact;
+  }
+  return let_stopped_slip(resolution) ? NULL : report_rest(resolution);
+}
+
+/* Returns the gap above which a closed contact counts as moved apart; larger for importers, whose states drift more. */
+static double largest_drift(const struct Resolution *resolution) {
+  return (resolution->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(resolution->state, 0);
+}
+
+/* Opens closed contacts that were moved apart. True if any. */
+static bool open_lifted(struct Resolution *resolution) {
+  bool opens = false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    if (!contact_is_closed(resolution, i) || contact_value(resolution, i, CONTACT_GAP) <= largest_drift(resolution))
+      continue;
+    set_contact(resolution, i, false);
+    opens = true;
+  }
+  return opens;
+}
+
+/* Opens closed contacts whose gap opens faster than errors, at a switch such as an edge or by an event. True if any. */
+static bool open_parting(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  double drift = continuity_allowed_share(resolution) * largest_scale(resolution->state, lagrangian.coordinate_count);
+  bool opens = false;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t slot = contact_slot(switches, i, CONTACT_RATE);
+    double rate = resolution->value[slot], least = resolution->thrown ? resolution->error_bound[slot] : drift;
+    if (!contact_is_closed(resolution, i) || !(rate > least)) continue;
+    set_contact(resolution, i, false);
+    resolution->was_opened[i] = 1.0;
+    opens = true;
+  }
+  return opens;
+}
+
+static bool part(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  open_lifted(resolution);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double gap = contact_value(resolution, i, CONTACT_GAP);
+    if (contact_is_closed(resolution, i) || gap >= -largest_drift(resolution)) continue;
+    log_message(
+        resolution->instance, STATUS_DISCARD,
+        "time %g: after a parameter, an input or a state was set, the contact '%s' is penetrated: its gap is %g; "
+        "expected values for which it is not negative",
+        resolution->time, switches->contacts[i].name, gap);
+    return false;
+  }
+  return true;
+}
+
+/*
+ * True if the penetration of an open contact has to be projected out. An importer locates contacts late, and would
+ * not see a zero of an indicator that stays negative. At an event this concerns a contact without speed. It also
+ * concerns one that has just opened and that the projection onto other constraints has left penetrated. Its event
+ * would be located again and again.
+ */
+static bool has_to_lift(const struct Resolution *resolution, size_t contact) {
+  size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
+  const double *value = resolution->value, *error_bound = resolution->error_bound;
+  if (contact_is_closed(resolution, contact) || !(value[gap] < -error_bound[gap])) return false;
+  if (!(value[gap] >= -largest_drift(resolution))) return false;
+  bool has_stopped = resolution->jumped && value[rate] <= error_bound[rate];
+  bool is_stuck = is_hit(resolution, contact_indicator(resolution->switches, contact)) && value[rate] >= 0.0;
+  bool comes_again = (has_stopped || is_stuck) && value[gap] < -found_again * error_bound[gap];
+  return resolution->occasion == IN_EXCHANGE || (resolution->occasion == AT_EVENT && comes_again);
+}
+
+/* Projects the penetrations of all such contacts to 0; *lifts if there are any. False if the projection fails. */
+static bool lift(struct Resolution *resolution, bool *lifts) {
+  *lifts = false;
+  if (resolution->moved || resolution->lifts == LIFT_LIMIT) return true;
+  resolution_keep_modes(resolution);
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
+    if (!has_to_lift(resolution, i)) continue;
+    set_contact(resolution, i, true);
+    *lifts = true;
+  }
+  if (!*lifts) return true;
+  resolution->lifts++;
+  bool done = resolution_project_coordinates(resolution);
+  resolution_restore_modes(resolution);
+  return done;
+}
+
+/* Returns the fixed coordinate that the last projection at the start has moved most; coordinate_count for none. */
+static size_t find_moved_fixed(const struct Resolution *resolution) {
+  const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
+  size_t found = lagrangian.coordinate_count;
+  double most = largest_penetration;
+  for (size_t i = 0; i < lagrangian.coordinate_count && is_fixed != NULL; i++) {
+    double move = fabs(resolution->correction[i]) / scale_of(resolution->state, i);
+    if (!is_fixed[i] || !(move > most)) continue;
+    most = move;
+    found = i;
+  }
+  return found;
+}
+
+/* Undoes a projection at the start that has moved a fixed coordinate. True if it has. */
+static bool undo_move_of_fixed(struct Resolution *resolution) {
+  if (find_moved_fixed(resolution) == lagrangian.coordinate_count) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) resolution->state[i] -= resolution->correction[i];
+  return true;
+}
+
+/* True if the penetration of a contact may come from rounded start values. */
+static bool is_rounded(const struct Resolution *resolution, size_t contact) {
+  double gap = contact_value(resolution, contact, CONTACT_GAP);
+  return gap < -largest_penetration && gap >= -rounded_start * largest_scale(resolution->state, 0);
+}
+
+/*
+ * Projects out penetrations by rounded start values; takes_part keeps the most negative gap of each contact. True if
+ * there are any, and they can be moved.
+ */
+static bool part_at_start(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool parts = false;
+  resolution_keep_modes(resolution);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    if (!is_rounded(resolution, i)) continue;
+    resolution->takes_part[i] = fmin(resolution->takes_part[i], contact_value(resolution, i, CONTACT_GAP));
+    set_contact(resolution, i, true);
+    parts = true;
+  }
+  parts = parts && resolution_project_coordinates(resolution) && !undo_move_of_fixed(resolution);
+  resolution_restore_modes(resolution);
+  return parts;
+}
+
+static void log_parted(const struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (resolution->takes_part[i] < 0.0 && !is_rounded(resolution, i))
+      log_message(resolution->instance, STATUS_DONE,
+                  "time %g: the start values are moved to open the contact '%s', whose gap was %g", resolution->time,
+                  resolution->switches->contacts[i].name, resolution->takes_part[i]);
+}
+
+static bool lift_start(struct Resolution *resolution) {
+  int count = 0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) resolution->takes_part[i] = 0.0;
+  while (count < LIFT_LIMIT && part_at_start(resolution)) {
+    if (!resolution_evaluate(resolution)) return false;
+    count++;
+  }
+  log_parted(resolution);
+  return count == 0 || resolution_project_velocities(resolution);
+}
+
+/*
+ * Returns the closed contact that pulls most; else one whose force has just reached 0, once an event; contact_count for
+ * none.
+ */
+static size_t find_pulling(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t found = switches->contact_count;
+  double most = 0.0;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    if (!contact_is_closed(resolution, i)) continue;
+    double force = contact_force(resolution, i);
+    /* An importer stops at a zero or beyond it, and does not say of which indicator. */
+    bool is_reached = is_hit(resolution, contact_indicator(resolution->switches, i)) ||
+                      (resolution->occasion == IN_EXCHANGE && force <= 0.0);
+    bool was_closed = resolution->first_mode[i] == mode_of(resolution, switches->contacts[i].mode);
+    bool parts = is_reached && was_closed && resolution->was_opened[i] == 0.0 && !resolution->jumped;
+    if (!(force < 0.0) && !parts) continue;
+    if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
+    most = fmin(force, 0.0);
+    found = i;
+  }
+  return found;
+}
+
+/*
+ * Logs a contact whose gap, or whose rate where it touches, is not finite. Returns NULL if there is none, else the
+ * reason to stop.
+ */
+static const char *check_values(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    bool has_gap = isfinite(contact_value(resolution, i, CONTACT_GAP));
+    bool needs_rate = contact_is_closed(resolution, i) || is_touching(resolution, i);
+    if (has_gap && (!needs_rate || isfinite(contact_value(resolution, i, CONTACT_RATE)))) continue;
+    log_message(resolution->instance, resolution_status(resolution),
+                "time %g: the gap of the contact '%s' has no finite %s, as where exp(x) overflows above x = 709; "
+                "expected a gap that is finite",
+                resolution->time, switches->contacts[i].name, has_gap ? "rate" : "value");
+    return "a contact has no finite gap";
+  }
+  return NULL;
+}
+
+/* Logs a contact that is penetrated by less than a rounded start value, which is fixed. False for others. */
+static bool report_fixed_start(const struct Resolution *resolution, size_t contact) {
+  bool is_undone = resolution->occasion == AT_START && resolution->takes_part[contact] < 0.0;
+  size_t fixed = is_undone ? find_moved_fixed(resolution) : lagrangian.coordinate_count;
+  if (fixed == lagrangian.coordinate_count) return false;
+  double start = resolution->state[fixed];
+  log_message(resolution->instance, STATUS_ERROR,
+              "time %g: the contact '%s' is penetrated at the start: its gap is %g, and the start of '%s' is fixed at "
+              "%.12g; expected %.12g, or fixed=\"false\", with which it is moved by the gap",
+              resolution->time, resolution->switches->contacts[contact].name,
+              contact_value(resolution, contact, CONTACT_GAP), evaluate_name(VARIABLE_STATE, fixed), start,
+              start + resolution->correction[fixed]);
+  return true;
+}
+
+static const char *check_gaps(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  const char *problem = check_values(resolution);
+  if (problem != NULL) return problem;
+  bool starts = resolution->occasion == AT_START, moved = resolution->moved;
+  double allowed = starts || moved ? largest_penetration : largest_drift(resolution);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    double gap = contact_value(resolution, i, CONTACT_GAP);
+    if (gap >= -allowed) continue;
+    if (report_fixed_start(resolution, i)) return penetrated;
+    log_message(
+        resolution->instance, starts ? STATUS_ERROR : STATUS_DISCARD,
+        "time %g: the contact '%s' is penetrated at %s: its gap is %g; expected %s for which it is not negative",
+        resolution->time, switches->contacts[i].name,
+        starts  ? "the start"
+        : moved ? "an event that sets coordinates"
+                : "an event that switches the gap",
+        gap,
+        starts  ? "start values or parameters"
+        : moved ? "values of <set>"
+                : "conditions and modes");
+    return penetrated;
+  }
+  return NULL;
+}
+
+static const char *act_once(struct Resolution *resolution, bool *again) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool may_change = may_change_gaps(resolution) && resolution->occasion != AT_START;
+  *again = true;
+  const char *problem = check_values(resolution);
+  if (problem != NULL) return problem;
+  if ((resolution->moved || may_change || resolution->occasion == IN_EXCHANGE) && open_lifted(resolution)) return NULL;
+  if (may_change && !resolution->jumped) problem = check_gaps(resolution);
+  if (problem != NULL) return problem;
+  if (((may_change && !resolution->jumped) || resolution->thrown) && open_parting(resolution)) return NULL;
+  size_t contact = find_impact(resolution);
+  bool hits = contact<switches->contact_count, is_tried = resolution->impacts> IMPACT_LIMIT;
+  if (hits && is_tried && closes_clearly(resolution, contact))
+    return contact_forces_report_crushed(resolution, contact);
+  if (hits && !is_tried) return take_impact(resolution, contact) ? NULL : report_singular_impact(resolution, contact);
+  if (close_contacts(resolution)) return let_rest(resolution);
+  bool lifts;
+  if (!lift(resolution, &lifts)) return report_rest(resolution);
+  if (lifts) return NULL;
+  size_t pulling = find_pulling(resolution);
+  *again = pulling < switches->contact_count;
+  if (!*again) return NULL;
+  resolution->was_opened[pulling] = 1.0;
+  set_contact(resolution, pulling, false);
+  let_go(resolution);
+  return NULL;
+}
+
+const struct ContactLaws contact_laws = {.act = act_once,
+                                         .resolve_forces = contact_forces_resolve,
+                                         .share_load = contacts_share_load,
+                                         .part = part,
+                                         .lift_start = lift_start,
+                                         .check_gaps = check_gaps,
+                                         .explain = contact_forces_explain};

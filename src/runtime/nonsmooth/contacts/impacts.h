@@ -1,0 +1,18 @@
+/* Impacts: the impulses of contacts that are hit at the same time, and of the frictions on them. */
+#ifndef IMPACTS_H
+#define IMPACTS_H
+
+#include "nonsmooth/resolution.h"
+
+/*
+ * Changes the velocities by the impulses of the contacts that take part; by Newton's law of restitution if bounces,
+ * else without restitution. False, after logging the cause, if no impulses are found.
+ */
+bool impacts_take(struct Resolution *resolution, bool bounces);
+
+struct ContactImpulses;
+
+/* True if impulses cause another motion than found, beyond rounding, and gain no energy. */
+bool is_other_outcome(const struct ContactImpulses *impulses, const double *impulse, const double *found);
+
+#endif

@@ -1,0 +1,33 @@
+/* Sliding speeds of frictions, along a line or in a plane. */
+#ifndef PLANES_H
+#define PLANES_H
+
+#include <math.h>
+
+#include "evaluation/evaluate.h"
+#include "nonsmooth/resolution.h"
+
+/*
+ * Returns the speed up to which a friction counts as at rest; larger for importers, which keep constraints less well.
+ */
+static inline double resting_speed(const struct Resolution *resolution) {
+  double share = resolution->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
+  return share * largest_scale(resolution->state, lagrangian.coordinate_count);
+}
+
+/* Returns the speed of a friction in a plane. along: index of the first of its two frictions. */
+static inline double speed_in_plane(const struct Resolution *resolution, size_t along) {
+  const double *value = resolution->value;
+  return hypot(value[friction_slot(resolution->switches, along, FRICTION_VELOCITY)],
+               value[friction_slot(resolution->switches, along + 1, FRICTION_VELOCITY)]);
+}
+
+/* Returns the sliding speed of a friction. */
+static inline double sliding_speed(const struct Resolution *resolution, size_t friction) {
+  size_t plane = plane_of(resolution->switches, friction);
+  if (plane < resolution->switches->plane_count)
+    return speed_in_plane(resolution, resolution->switches->planes[plane].along);
+  return fabs(resolution->value[friction_slot(resolution->switches, friction, FRICTION_VELOCITY)]);
+}
+
+#endif

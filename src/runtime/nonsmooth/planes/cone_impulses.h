@@ -1,0 +1,25 @@
+/* Impulses of contacts with Coulomb friction in planes. */
+#ifndef CONE_IMPULSES_H
+#define CONE_IMPULSES_H
+
+#include "nonsmooth/contacts/contact_impulses.h"
+
+/*
+ * Implements find_impulses of struct FrictionLaws. Returns false if none are found; impulse[] then holds the last
+ * trial. Returns false, too, if no impulse moves one of the contacts, or memory is missing.
+ */
+bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
+                        double *impulse);
+
+/*
+ * Finds forces at rest: impulses of the same law, with the accelerations as rates. Where several sets of forces fulfil
+ * it, these have a margin to their limits. False if none are found.
+ */
+bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
+                      double *force);
+
+/* Implements has_other_impulses. It searches from several starts, and so may miss some. */
+bool cone_impulses_have_others(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                               const double *rate, const double *impulse);
+
+#endif

@@ -1,0 +1,396 @@
+/*
+ * Primal-dual interior-point method for the law of contact and friction, as a problem over second-order cones. A
+ * contact has the pair s >= 0, its impulse, and y >= 0, its rate behind. A friction has the pair
+ *
+ *   s = (limit, p),   y = (y0, u),   u: its rate behind,
+ *
+ * both in the cone of vectors (a, b) with a >= |b|. The limit is a linear function of the impulses. The law is
+ * u = rate + W p and s o y = 0, where o is the product of the cone's Jordan algebra. The central path holds the
+ * solutions of s o y = mu e, e the unit, for mu > 0. The method follows it as mu falls to 0. With the scaling Q of
+ * Nesterov and Todd, Q s = y, the linearized equations for a step dp are
+ *
+ *   (W + Q) dp = mu / s - rate - W p,   y + dy = mu / s - Q ds.
+ *
+ * A step takes one elimination, O(n^3), and ends before the boundary. Where several impulses fulfil the law, the path
+ * ends in the interior of their set: forces of redundant supports have a margin to their limits. Once mu is small, the
+ * semismooth Newton method of cone_newton.c ends the search.
+ *
+ * Coulomb's law is not associated: sliding does not open a contact. The path may therefore end in front of a solution.
+ * Then the associated problem is solved, which is convex. There the rate of each contact is reduced by mu |u| of its
+ * frictions. |u| is that of the last solution, and the problem is solved again until it does not change (V. Acary and
+ * F. Cadoux: Applications of an existence result for the Coulomb friction problem, Recent Advances in Contact
+ * Mechanics, 2013).
+ */
+#include "nonsmooth/planes/cone_interior.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "nonsmooth/contacts/elimination.h"
+#include "nonsmooth/planes/cone_newton.h"
+
+/* Steps of a path at most; steps between two trials of Newton's method; associated problems at most. */
+enum { PATH_STEPS = 40, TRIAL_STEPS = 3, ASSOCIATED_LIMIT = 60, UNDAMPED_LIMIT = 20 };
+
+/* Elements of a friction's pairs: the limit and up to two directions. */
+enum { CONE_SIZE = 3 };
+
+/* Part of the way to the boundary that a step keeps. */
+static const double inside = 0.99;
+
+/* mu of the next point of the path, relative to the present one, after a long step and after a short one. */
+static const double centering[] = {0.1, 0.5};
+static const double long_step = 0.6;
+
+/* mu at which Newton's method is tried at each step, and at which the path ends; rates and impulses are of order 1. */
+static const double nearly_none = 1e-6, none = 1e-15;
+
+/* A problem scaled such that W_ii = 1 and the largest rate is 1. Vectors have an element a row. */
+struct Interior {
+  struct Cones *cones;
+  size_t n, degree;         /* degree: number of pairs */
+  double size;              /* largest rate, in units of the rows */
+  double *unit;             /* 1 / sqrt(W_ii); 0 for a row that takes no part */
+  double *x, *dual;         /* impulse and rate behind */
+  double *head, *dual_head; /* limit and y0, at the first row of a friction */
+  double *dx, *ddual, *dhead, *ddual_head;
+  double *shift;        /* mu |u| of the last solution, for the associated problem */
+  double *equations;    /* n rows of n + 1 */
+  double *best;         /* impulses with the least residual */
+  double least, enough; /* this residual, and one that ends the search */
+  bool is_associated, is_centered;
+};
+
+size_t cone_interior_work_count(size_t n) {
+  return n * (n + 1) + 11 * n + cone_newton_work_count(n);
+}
+
+static bool takes_part(const struct Interior *interior, size_t row) {
+  return interior->unit[row] > 0.0;
+}
+
+static bool is_contact_row(const struct Interior *interior, size_t row) {
+  return row < interior->cones->impulses->contact_count;
+}
+
+static size_t size_of_pair(const struct Interior *interior, size_t row) {
+  return 1 + cones_row_count(interior->cones, row);
+}
+
+/* Returns the limit of a friction by a unit impulse of a row that decides on limits. */
+static double scaled_coefficient(const struct Interior *interior, size_t row, size_t deciding) {
+  return cones_coefficient(interior->cones, row, deciding) * interior->unit[deciding] / interior->unit[row];
+}
+
+/* Returns the part of the limit of a friction that no row decides. */
+static double given_limit(const struct Interior *interior, size_t row) {
+  const struct ContactImpulses *impulses = interior->cones->impulses;
+  double given = impulses->given != NULL ? impulses->given[row - impulses->contact_count] : 0.0;
+  return given / (interior->unit[row] * interior->size);
+}
+
+static double scaled_delassus(const struct Interior *interior, size_t i, size_t j) {
+  const struct ContactImpulses *impulses = interior->cones->impulses;
+  return impulses->delassus[i * impulses->count + j] * interior->unit[i] * interior->unit[j];
+}
+
+/* Returns the part of a limit that impulses x decide. */
+static double limit_of(const struct Interior *interior, size_t row, const double *x) {
+  double limit = 0.0;
+  for (size_t i = 0; i < interior->cones->impulses->deciding_count; i++)
+    limit += scaled_coefficient(interior, row, i) * x[i];
+  return limit;
+}
+
+/* Copies the pairs of a friction: its head, and the rows of its tail. */
+static void copy_pair(const struct Interior *interior, size_t row, const double *head, const double *tail,
+                      double *pair) {
+  pair[0] = head[row];
+  for (size_t i = 1; i < size_of_pair(interior, row); i++) pair[i] = tail[row + i - 1];
+}
+
+static double length_of_tail(const double *pair, size_t size) {
+  return size == 2 ? fabs(pair[1]) : hypot(pair[1], pair[2]);
+}
+
+/* Returns a^2 - |b|^2 of (a, b), which is positive inside of the cone. */
+static double cone_determinant(const double *pair, size_t size) {
+  double length = length_of_tail(pair, size);
+  return (pair[0] - length) * (pair[0] + length);
+}
+
+/* Fills 1 / s of the cone's algebra. */
+static void invert_pair(const double *pair, size_t size, double *inverse) {
+  double determinant = cone_determinant(pair, size);
+  for (size_t i = 0; i < size; i++) inverse[i] = (i == 0 ? 1.0 : -1.0) * pair[i] / determinant;
+}
+
+/*
+ * Fills the scaling Q = (2 v v^T - R) / eta, R = diag(1, -1, -1), with Q s = y (Y. E. Nesterov and M. J. Todd:
+ * Self-scaled barriers, Mathematics of Operations Research 22, 1997).
+ */
+static void fill_scaling(const double *s, const double *y, size_t size, double scaling[CONE_SIZE][CONE_SIZE]) {
+  double of_s = sqrt(cone_determinant(s, size)), of_y = sqrt(cone_determinant(y, size)), product = 0.0;
+  double v[CONE_SIZE];
+  for (size_t i = 0; i < size; i++) product += s[i] / of_s * (y[i] / of_y);
+  double gamma = sqrt(0.5 * (1.0 + product));
+  for (size_t i = 0; i < size; i++) v[i] = ((i == 0 ? 1.0 : -1.0) * s[i] / of_s + y[i] / of_y) / (2.0 * gamma);
+  for (size_t i = 0; i < size; i++)
+    for (size_t j = 0; j < size; j++) {
+      double reflection = i != j ? 0.0 : i == 0 ? 1.0 : -1.0;
+      scaling[i][j] = (2.0 * v[i] * v[j] - reflection) * of_y / of_s;
+    }
+}
+
+/* Returns the largest step that keeps a pair in the cone. */
+static double longest_step_in_cone(const double *pair, const double *change, size_t size) {
+  double b = pair[0] * change[0], length = INFINITY;
+  for (size_t i = 1; i < size; i++) b -= pair[i] * change[i];
+  double a = cone_determinant(change, size), c = cone_determinant(pair, size), root = b * b - a * c;
+  if ((a < 0.0 || b < 0.0) && root >= 0.0 && sqrt(root) > b) length = c / (sqrt(root) - b);
+  if (change[0] < 0.0) length = fmin(length, -pair[0] / change[0]);
+  return length;
+}
+
+/* Fills a row of W, with minus the rate behind as its right side. */
+static void fill_row(const struct Interior *interior, size_t row) {
+  double *equation = interior->equations + row * (interior->n + 1);
+  double behind = interior->cones->rate[row] * interior->unit[row] / interior->size;
+  for (size_t j = 0; j < interior->n; j++) {
+    equation[j] = scaled_delassus(interior, row, j);
+    behind += equation[j] * interior->x[j];
+  }
+  if (!takes_part(interior, row)) equation[row] = 1.0;
+  equation[interior->n] = -behind - (interior->is_associated ? interior->shift[row] : 0.0);
+}
+
+/* Adds the terms by which the associated law couples a friction with the rows that decide on its limit. */
+static void associate(const struct Interior *interior, size_t row, double scaling[CONE_SIZE][CONE_SIZE],
+                      double target) {
+  size_t deciding = interior->cones->impulses->deciding_count, width = interior->n + 1;
+  for (size_t i = 0; i < deciding; i++) {
+    double *equation = interior->equations + i * width, coefficient = scaled_coefficient(interior, row, i);
+    if (coefficient == 0.0) continue;
+    for (size_t j = 0; j < deciding; j++)
+      equation[j] += coefficient * scaling[0][0] * scaled_coefficient(interior, row, j);
+    for (size_t k = 1; k < size_of_pair(interior, row); k++) equation[row + k - 1] += coefficient * scaling[0][k];
+    equation[interior->n] += coefficient * target;
+  }
+}
+
+/* Returns by how much the head of a friction's pair is less than its limit; a path may start so, and removes it. */
+static double missing_limit(const struct Interior *interior, size_t row) {
+  return given_limit(interior, row) + limit_of(interior, row, interior->x) - interior->head[row];
+}
+
+static void fill_step_of_friction(const struct Interior *interior, size_t row, double mu) {
+  size_t size = size_of_pair(interior, row), width = interior->n + 1;
+  double s[CONE_SIZE] = {0.0}, y[CONE_SIZE] = {0.0}, inverse[CONE_SIZE], scaling[CONE_SIZE][CONE_SIZE];
+  copy_pair(interior, row, interior->head, interior->x, s);
+  copy_pair(interior, row, interior->dual_head, interior->dual, y);
+  fill_scaling(s, y, size, scaling);
+  invert_pair(s, size, inverse);
+  double missing = missing_limit(interior, row);
+  for (size_t k = 1; k < size; k++) {
+    double *equation = interior->equations + (row + k - 1) * width;
+    for (size_t i = 0; i < interior->cones->impulses->deciding_count; i++)
+      equation[i] += scaling[k][0] * scaled_coefficient(interior, row, i);
+    for (size_t j = 1; j < size; j++) equation[row + j - 1] += scaling[k][j];
+    equation[interior->n] += mu * inverse[k] - scaling[k][0] * missing;
+  }
+  if (interior->is_associated) associate(interior, row, scaling, mu * inverse[0] - scaling[0][0] * missing);
+}
+
+/* Fills the equations of the step to the point of the path at mu. */
+static void fill_step_equations(const struct Interior *interior, double mu) {
+  for (size_t row = 0; row < interior->n; row++) fill_row(interior, row);
+  for (size_t row = 0; row < interior->n; row += cones_row_count(interior->cones, row)) {
+    double *equation = interior->equations + row * (interior->n + 1);
+    if (!takes_part(interior, row)) continue;
+    if (!is_contact_row(interior, row)) {
+      fill_step_of_friction(interior, row, mu);
+      continue;
+    }
+    equation[row] += interior->dual[row] / interior->x[row];
+    equation[interior->n] += mu / interior->x[row];
+  }
+}
+
+/* Computes the step of a friction's duals from that of the impulses. Returns the longest step of its pairs. */
+static double find_step_of_friction(const struct Interior *interior, size_t row, double mu) {
+  size_t size = size_of_pair(interior, row);
+  double s[CONE_SIZE] = {0.0}, y[CONE_SIZE] = {0.0}, ds[CONE_SIZE] = {0.0}, dy[CONE_SIZE] = {0.0};
+  double scaling[CONE_SIZE][CONE_SIZE];
+  copy_pair(interior, row, interior->head, interior->x, s);
+  copy_pair(interior, row, interior->dual_head, interior->dual, y);
+  interior->dhead[row] = limit_of(interior, row, interior->dx) + missing_limit(interior, row);
+  copy_pair(interior, row, interior->dhead, interior->dx, ds);
+  fill_scaling(s, y, size, scaling);
+  invert_pair(s, size, dy);
+  for (size_t i = 0; i < size; i++) {
+    dy[i] = mu * dy[i] - y[i];
+    for (size_t j = 0; j < size; j++) dy[i] -= scaling[i][j] * ds[j];
+  }
+  interior->ddual_head[row] = dy[0];
+  for (size_t i = 1; i < size; i++) interior->ddual[row + i - 1] = dy[i];
+  return fmin(longest_step_in_cone(s, ds, size), longest_step_in_cone(y, dy, size));
+}
+
+static double find_step_of_contact(const struct Interior *interior, size_t row, double mu) {
+  double x = interior->x[row], dual = interior->dual[row], *dx = &interior->dx[row], *ddual = &interior->ddual[row];
+  *ddual = mu / x - dual - dual / x * *dx;
+  return fmin(*dx < 0.0 ? -x / *dx : INFINITY, *ddual < 0.0 ? -dual / *ddual : INFINITY);
+}
+
+/* Finds a step. Returns its length, or 0 if the equations are singular to rounding. */
+static double find_path_step(const struct Interior *interior, double mu) {
+  size_t n = interior->n;
+  double longest = INFINITY;
+  fill_step_equations(interior, mu);
+  if (!solve_by_elimination(n, interior->equations)) return 0.0;
+  for (size_t i = 0; i < n; i++) interior->dx[i] = interior->equations[i * (n + 1) + n];
+  for (size_t row = 0; row < n; row += cones_row_count(interior->cones, row)) {
+    if (!takes_part(interior, row)) continue;
+    double length = is_contact_row(interior, row) ? find_step_of_contact(interior, row, mu)
+                                                  : find_step_of_friction(interior, row, mu);
+    longest = fmin(longest, length);
+  }
+  return isnan(longest) ? 0.0 : fmin(inside * longest, 1.0);
+}
+
+static void take_path_step(const struct Interior *interior, double length) {
+  for (size_t i = 0; i < interior->n; i++) {
+    interior->x[i] += length * interior->dx[i];
+    interior->dual[i] += length * interior->ddual[i];
+    interior->head[i] += length * interior->dhead[i];
+    interior->dual_head[i] += length * interior->ddual_head[i];
+  }
+}
+
+/* Returns mu, the mean product of the pairs. */
+static double mean_product(const struct Interior *interior) {
+  double sum = 0.0;
+  for (size_t i = 0; i < interior->n; i++)
+    sum += interior->x[i] * interior->dual[i] + interior->head[i] * interior->dual_head[i];
+  return sum / (double)interior->degree;
+}
+
+/* Tries Newton's method from the point of the path. True if its residual is small enough. */
+static bool try_newton(struct Interior *interior, double *work) {
+  struct Cones *cones = interior->cones;
+  for (size_t i = 0; i < interior->n; i++)
+    cones->impulse[i] = takes_part(interior, i) ? interior->x[i] * interior->unit[i] * interior->size : 0.0;
+  double miss = cones_relative_miss(cones, cone_newton(cones, work));
+  if (!(miss < interior->least)) return false;
+  interior->least = miss;
+  memcpy(interior->best, cones->impulse, interior->n * sizeof *interior->best);
+  return miss <= interior->enough;
+}
+
+/* Starts the path where all contacts press and no friction has a force. */
+static void start_path(const struct Interior *interior) {
+  memset(interior->x, 0, 8 * interior->n * sizeof *interior->x); /* and the vectors behind, up to ddual_head */
+  for (size_t row = 0; row < interior->cones->impulses->contact_count; row++)
+    interior->x[row] = interior->dual[row] = takes_part(interior, row) ? 1.0 : 0.0;
+  for (size_t row = interior->cones->impulses->contact_count; row < interior->n;
+       row += cones_row_count(interior->cones, row)) {
+    if (!takes_part(interior, row)) continue;
+    interior->head[row] = fmax(given_limit(interior, row) + limit_of(interior, row, interior->x), 1.0);
+    interior->dual_head[row] = 1.0;
+  }
+}
+
+/* Follows the path. True if impulses with a small enough residual are found. */
+static bool follow_central_path(struct Interior *interior, double *work) {
+  double mu = INFINITY, length = 1.0;
+  start_path(interior);
+  for (int step = 0; step < PATH_STEPS && length > 0.0 && mu > none; step++) {
+    mu = mean_product(interior);
+    bool is_near = mu < nearly_none || (!interior->is_associated && step % TRIAL_STEPS == TRIAL_STEPS - 1);
+    if (is_near && !interior->is_centered && try_newton(interior, work)) return true;
+    length = find_path_step(interior, mu * centering[length < long_step]);
+    take_path_step(interior, length);
+  }
+  return try_newton(interior, work);
+}
+
+/* Sets the shifts to mu |u| of the solution; damped ones to the mean with those before. */
+static void update_shift(const struct Interior *interior, bool is_damped) {
+  const struct ContactImpulses *impulses = interior->cones->impulses;
+  for (size_t i = 0; i < impulses->deciding_count; i++) {
+    double shift = 0.0, speed[CONE_SIZE] = {0.0};
+    for (size_t row = impulses->contact_count; row < interior->n; row += cones_row_count(interior->cones, row)) {
+      if (!takes_part(interior, row)) continue;
+      copy_pair(interior, row, interior->dual_head, interior->dual, speed);
+      shift += scaled_coefficient(interior, row, i) * length_of_tail(speed, size_of_pair(interior, row));
+    }
+    interior->shift[i] = is_damped ? 0.5 * (interior->shift[i] + shift) : shift;
+  }
+}
+
+/* True if a row can have an impulse that changes its rate. */
+static bool can_push(const struct Interior *interior, size_t row) {
+  const struct ContactImpulses *impulses = interior->cones->impulses;
+  if (!(interior->cones->scale[row] > 0.0)) return false;
+  if (row < impulses->contact_count) return true;
+  double most = impulses->given != NULL ? impulses->given[row - impulses->contact_count] : 0.0;
+  for (size_t i = 0; i < impulses->deciding_count; i++)
+    most = fmax(most, fabs(cones_coefficient(interior->cones, row, i)));
+  return most > 0.0;
+}
+
+/* Fills the units and the largest rate, and counts the pairs. */
+static void fill_units_of_rows(struct Interior *interior) {
+  const struct Cones *cones = interior->cones;
+  for (size_t row = 0; row < interior->n;) {
+    size_t rows = cones_row_count(cones, row);
+    bool can = can_push(interior, row);
+    interior->degree += can ? 1 : 0;
+    for (size_t i = row; i < row + rows; i++) {
+      interior->unit[i] = can ? 1.0 / sqrt(cones->scale[i]) : 0.0;
+      interior->size = fmax(interior->size, fabs(cones->rate[i]) * interior->unit[i]);
+    }
+    row += rows;
+  }
+}
+
+static struct Interior interior_in(struct Cones *cones, double enough, double *work) {
+  size_t n = cones->impulses->count;
+  struct Interior interior = {.cones = cones, .n = n, .least = INFINITY, .enough = enough, .unit = work};
+  interior.x = interior.unit + n;
+  interior.dual = interior.x + n;
+  interior.head = interior.dual + n;
+  interior.dual_head = interior.head + n;
+  interior.dx = interior.dual_head + n;
+  interior.ddual = interior.dx + n;
+  interior.dhead = interior.ddual + n;
+  interior.ddual_head = interior.dhead + n;
+  interior.shift = interior.ddual_head + n;
+  interior.best = interior.shift + n;
+  interior.equations = interior.best + n;
+  return interior;
+}
+
+double cone_interior(struct Cones *cones, double enough, bool is_centered, double *work) {
+  struct Interior interior = interior_in(cones, enough, work);
+  interior.is_centered = is_centered;
+  size_t n = interior.n;
+  memset(interior.best, 0, n * sizeof *interior.best);
+  memset(interior.shift, 0, n * sizeof *interior.shift);
+  fill_units_of_rows(&interior);
+  if (interior.size > 0.0) {
+    double *newton = interior.equations + n * (n + 1);
+    bool is_found = follow_central_path(&interior, newton);
+    if (!is_found && is_centered) {
+      interior.is_centered = false;
+      is_found = follow_central_path(&interior, newton);
+    }
+    interior.is_associated = true;
+    for (int count = 0; count < ASSOCIATED_LIMIT && !is_found; count++) {
+      is_found = follow_central_path(&interior, newton);
+      update_shift(&interior, count >= UNDAMPED_LIMIT);
+    }
+  } else interior.least = 0.0;
+  memcpy(cones->impulse, interior.best, n * sizeof *interior.best);
+  return interior.least;
+}

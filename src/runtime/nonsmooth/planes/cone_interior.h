@@ -1,0 +1,17 @@
+/* Interior-point method for impulses, or forces, with Coulomb friction cones. */
+#ifndef CONE_INTERIOR_H
+#define CONE_INTERIOR_H
+
+#include "nonsmooth/planes/cones.h"
+
+/* Returns the number of doubles of workspace for n rows. */
+size_t cone_interior_work_count(size_t n);
+
+/*
+ * Finds impulses that fulfil the law, from no start; ends at the residual `enough`. is_centered: where several fulfil
+ * it, contacts press and frictions stick as far inside of their limits as they can. Returns the residual of the best
+ * impulses found, relative to the largest one.
+ */
+double cone_interior(struct Cones *cones, double enough, bool is_centered, double *work);
+
+#endif

@@ -1,0 +1,197 @@
+/*
+ * Coulomb friction in planes. While it slides its force is kinetic, against the velocity u; while it sticks its force
+ * is |f| <= stiction. The zero u = 0 of a velocity in a plane cannot be located by a sign. Therefore a friction is
+ * tried to stick once its speed falls to a small value that depends on the tolerance. Beyond its stiction it slips
+ * along a direction d, with the force against d, until the velocity moves away from d; then it slides again.
+ * plane_rests.c finds at once which of the frictions at rest stick, and along which directions the others slip.
+ *
+ * Each round makes one change, or one to each of several frictions. A friction may switch more than TOGETHER_LIMIT
+ * times, or no forces may be found while the contacts stay closed. Then the forces of contacts and frictions are solved
+ * for together (plane_forces.c), at most once in an event resolution. Beyond FRICTION_FLIP_LIMIT switches the motion
+ * ends with a message.
+ */
+#include <math.h>
+#include <string.h>
+
+#include "nonsmooth/contacts/frictions.h"
+#include "nonsmooth/contacts/jams.h"
+#include "evaluation/evaluate.h"
+#include "nonsmooth/planes/cone_impulses.h"
+#include "nonsmooth/planes/plane_forces.h"
+#include "nonsmooth/planes/plane_rests.h"
+
+/*
+ * In rounding errors of the last solution: accelerations off the slip direction that count as 0. plane_rests.c lets
+ * frictions slip within a margin of 100 rounding errors to their limit.
+ */
+static const double in_rounding_error = 200.0;
+
+/* Switches of one friction after which all forces at rest are solved for at once. */
+enum { TOGETHER_LIMIT = 20 };
+
+static const char *reject_directions(const struct Resolution *resolution) {
+  frictions_report_missing(resolution, "directions");
+  return "the slip directions of frictions in a plane cannot be found";
+}
+
+/*
+ * Finds the modes of all that is at rest from all its forces at once. False if there are none, or it was done before.
+ */
+static bool resolve_together(struct Resolution *resolution) {
+  if (resolution->has_found_forces) return false;
+  resolution->has_found_forces = true;
+  return plane_forces_resolve(resolution);
+}
+
+/* True if a sliding friction needs other bounds on its speed, or another slip direction. */
+static bool is_sliding_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
+  double rising = state->mode == PLANE_SLIPS ? state->aside : state->speed;
+  if (resolution->occasion == AT_START && state->is_first) return true;
+  if (state->upper > 0.0 && (rising >= state->upper || (state->has_sped && state->is_first))) return true;
+  if (state->has_slowed && state->is_first) return true;
+  if (state->mode == PLANE_SLIPS) return state->ahead <= -state->lower;
+  return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
+}
+
+/* Lets a sticking friction slide that moves, as after an impact. True if it does. */
+static bool leave_rest(struct Resolution *resolution, const struct PlaneState *state) {
+  if (!(state->speed > state->small)) return false;
+  plane_slide(resolution, state);
+  plane_count_switch(resolution, state);
+  return true;
+}
+
+/* True if a friction that begins to slide does not accelerate along its direction. */
+static bool slips_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
+  if (state->mode != PLANE_SLIPS || state->speed > state->upper || plane_moves(state)) return false;
+  size_t slot = friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE);
+  double c = mode_of(resolution, state->metadata->slip_direction[0]),
+         s = mode_of(resolution, state->metadata->slip_direction[1]);
+  double ahead = c * state->rate[0] + s * state->rate[1], aside = c * state->rate[1] - s * state->rate[0];
+  double bound = fmax(in_rounding_error * resolution->least_acceleration,
+                      resolution->error_bound[slot] + resolution->error_bound[slot + FRICTION_VALUES]);
+  return ahead < -bound || fabs(aside) > bound;
+}
+
+/* True if a prescribed velocity leaves rest, or passes through it. */
+static bool departs(const struct Resolution *resolution, const struct PlaneState *state) {
+  const double *error_bound =
+      &resolution->error_bound[friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE)];
+  bool speeds = state->velocity[0] * state->rate[0] + state->velocity[1] * state->rate[1] >= 0.0;
+  bool has_rate = fabs(state->rate[0]) > error_bound[0] || fabs(state->rate[1]) > error_bound[FRICTION_VALUES];
+  return (state->has_slowed && state->is_first) || state->speed > state->lower || (speeds && has_rate);
+}
+
+/* Handles a friction with a prescribed velocity: at rest it has no force, else it slides. True if its mode changes. */
+static bool follow_given(struct Resolution *resolution, const struct PlaneState *state) {
+  if (state->mode == PLANE_STICKS) {
+    if (!departs(resolution, state)) return false;
+    if (plane_moves(state)) plane_slide(resolution, state);
+    else plane_slip(resolution, state, state->rate);
+  } else {
+    if (!plane_is_stopping(resolution, state) && !is_sliding_otherwise(resolution, state)) return false;
+    if (plane_moves(state)) plane_slide(resolution, state);
+    else plane_stick(resolution, state);
+  }
+  plane_count_switch(resolution, state);
+  return true;
+}
+
+/* Handles a friction that loses its force, or has one again. True if its mode changes. */
+static bool change_force(struct Resolution *resolution, const struct PlaneState *state) {
+  if (state->is_free != state->has_force) return false;
+  if (!state->has_force) plane_free(resolution, state);
+  else if (plane_moves(state)) plane_slide(resolution, state);
+  else plane_stick(resolution, state);
+  plane_count_switch(resolution, state);
+  return true;
+}
+
+/* Updates the bounds and the direction of a sliding friction. True if it had to. */
+static bool change_slide(struct Resolution *resolution, const struct PlaneState *state) {
+  if (!is_sliding_otherwise(resolution, state)) return false;
+  plane_slide(resolution, state);
+  plane_count_switch(resolution, state);
+  return true;
+}
+
+/* Returns a friction in a plane that has switched more often than the given number; friction_count for none. */
+static size_t find_flipping(const struct Resolution *resolution, double often) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->plane_count; i++)
+    if (resolution->flips[friction_indicator(switches, switches->planes[i].along)] > often)
+      return switches->planes[i].along;
+  return switches->friction_count;
+}
+
+static const char *act_on_planes(struct Resolution *resolution, bool *again) {
+  bool resolves = false;
+  *again = false;
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    if (state.is_free || !state.has_force) *again |= change_force(resolution, &state);
+    else if (state.is_given) *again |= follow_given(resolution, &state);
+    else if (state.mode == PLANE_STICKS && state.speed > state.small) *again |= leave_rest(resolution, &state);
+    else if (plane_is_stopping(resolution, &state) || plane_is_overcome(resolution, &state) ||
+             slips_otherwise(resolution, &state))
+      resolves = true;
+    else if (state.mode != PLANE_STICKS) *again |= change_slide(resolution, &state);
+  }
+  if (*again || !resolves) return NULL;
+  *again = true;
+  return plane_rests_find(resolution) || resolve_together(resolution) ? NULL : reject_directions(resolution);
+}
+
+static const char *act(struct Resolution *resolution, bool *again) {
+  const char *problem = frictions_act(resolution, again);
+  bool goes_round = find_flipping(resolution, TOGETHER_LIMIT) < resolution->switches->friction_count;
+  if (problem == NULL && !*again && goes_round && resolve_together(resolution)) *again = true;
+  else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
+  size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
+  if (problem == NULL && flipping < resolution->switches->friction_count)
+    return frictions_report_inconsistent(resolution, flipping);
+  return problem;
+}
+
+static void set_plane(struct Resolution *resolution, size_t plane, bool slides) {
+  struct PlaneState state = plane_state(resolution, plane);
+  const double slip_direction[] = {mode_of(resolution, state.metadata->slip_direction[0]),
+                                   mode_of(resolution, state.metadata->slip_direction[1])};
+  if (!slides) plane_stick(resolution, &state);
+  else if (plane_moves(&state)) plane_slide(resolution, &state);
+  else plane_slip(resolution, &state, slip_direction);
+}
+
+/* Before the start they move freely or slide, with the direction along: there is no slip direction yet. */
+static void guess(struct Instance *instance) {
+  struct Resolution resolution = resolution_of(instance);
+  const struct SwitchTable *switches = resolution.switches;
+  struct Point point = instance_point(instance);
+  double *parameter = instance->parameter;
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    const struct PlaneState state = {.metadata = &switches->planes[i]};
+    plane_free(&resolution, &state);
+    parameter[state.metadata->slip_direction[0]] = 1.0;
+    parameter[state.metadata->slip_direction[1]] = 0.0;
+  }
+  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
+  memset(resolution.acceleration, 0, rows * sizeof *resolution.acceleration);
+  if (lagrangian.prepare(parameter, instance->parameter_constants) != 0) return;
+  switches->switching_values(&point, resolution.acceleration, resolution.value);
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    size_t along = switches->planes[i].along;
+    if (speed_in_plane(&resolution, along) > 0.0) parameter[switches->frictions[along].mode] = PLANE_SLIDES;
+  }
+}
+
+const struct FrictionLaws plane_friction_laws = {.act = act,
+                                                 .report = frictions_report,
+                                                 .report_missing = frictions_report_missing,
+                                                 .check = frictions_check,
+                                                 .release = frictions_release,
+                                                 .resolve_jam = jams_resolve,
+                                                 .explain_jam = frictions_explain_jam,
+                                                 .guess = guess,
+                                                 .set_plane = set_plane,
+                                                 .find_impulses = cone_impulses_find,
+                                                 .has_other_impulses = cone_impulses_have_others};

@@ -1,0 +1,19 @@
+/* Frictions in planes at rest: which stick, which begin to slide, and along which directions. */
+#ifndef PLANE_RESTS_H
+#define PLANE_RESTS_H
+
+#include "nonsmooth/planes/plane_state.h"
+
+/* True if a sliding friction has to be tried to stick. */
+bool plane_is_stopping(const struct Resolution *resolution, const struct PlaneState *state);
+
+/* True if a sticking friction needs more than its stiction, or was found to reach it. */
+bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneState *state);
+
+/*
+ * Brings slow frictions to rest, and sets the modes of all at rest. Those that must slip begin along the directions
+ * with which all conditions hold. False, without a message, if none are found, or accelerations do not exist.
+ */
+bool plane_rests_find(struct Resolution *resolution);
+
+#endif

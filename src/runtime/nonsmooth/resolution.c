@@ -1,0 +1,246 @@
+#include "nonsmooth/resolution.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "detection/indicators.h"
+#include "detection/search.h"
+
+size_t resolution_value_count(const struct SwitchTable *switches) {
+  return sample_slot(switches, switches->sample_count, 0);
+}
+
+static size_t rows_of_matrix(void) {
+  return lagrangian.coordinate_count + lagrangian.constraints.count;
+}
+
+/* Assigns the parts of the workspace, and returns its size; with work NULL only returns the size. */
+static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t values = resolution_value_count(switches), indicators = indicator_count(switches);
+  const struct {
+    double **slot;
+    size_t count;
+  } parts[] = {
+      /* initially 0 */
+      {&resolution->largest, values},
+      {&resolution->flips, indicators},
+      {&resolution->rate, switches->branch_count},
+      {&resolution->absent, switches->branch_count},
+      {&resolution->was_opened, switches->contact_count},
+      {&resolution->struck, switches->contact_count},
+      {&resolution->value, values},
+      {&resolution->error_bound, values},
+      {&resolution->other_error_bound, values},
+      {&resolution->force_error_bound, switches->friction_count},
+      {&resolution->began, switches->friction_count},
+      {&resolution->condition, switches->event_count},
+      {&resolution->happened, switches->event_count},
+      {&resolution->first_mode, switches->contact_count + switches->friction_count},
+      {&resolution->takes_part, switches->contact_count + switches->friction_count},
+      {&resolution->moves, switches->resting_count},
+      {&resolution->probe_input, switches->resting_count > 0 ? lagrangian.input_count : 0},
+      {&resolution->probe_acceleration, switches->resting_count > 0 ? rows_of_matrix() : 0},
+      {&resolution->probe_sums, 2 * switches->resting_count},
+      {&resolution->ball_distance, switches->ball_count},
+      {&resolution->energy, switches->energy_count},
+      {&resolution->acceleration, rows_of_matrix()},
+      {&resolution->kept_modes, switches->mode_count},
+      {&resolution->rounded, lagrangian.state_count},
+      {&resolution->derivative, lagrangian.state_count},
+      {&resolution->rounding, indicators},
+      {&resolution->correction, lagrangian.coordinate_count + 3 * lagrangian.constraints.count},
+  };
+  size_t used = search_work_count();
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    if (work != NULL) *parts[i].slot = work + used;
+    used += parts[i].count;
+  }
+  return used;
+}
+
+size_t resolution_work_count(void) {
+  struct Resolution resolution;
+  return lay_out_resolution(&resolution, NULL);
+}
+
+struct Resolution resolution_of(struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  struct Resolution resolution = {.instance = instance, .switches = switches, .last = {switches->friction_count, 0, 0}};
+  lay_out_resolution(&resolution, instance->switching_work);
+  memset(resolution.largest, 0, (size_t)(resolution.value - resolution.largest) * sizeof(double));
+  return resolution;
+}
+
+struct Resolution resolution_at(struct Instance *instance, double time, double *state, enum Occasion occasion) {
+  struct Resolution resolution = resolution_of(instance);
+  resolution.time = time;
+  resolution.state = state;
+  resolution.occasion = occasion;
+  return resolution;
+}
+
+const double *resolution_accelerations(const struct Resolution *resolution) {
+  return lagrangian.constraints.accelerations != NULL ? resolution->acceleration
+                                                      : resolution->derivative + lagrangian.coordinate_count;
+}
+
+bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value) {
+  struct Instance *instance = resolution->instance;
+  struct Point point = solver_point(instance, time, state);
+  if (lagrangian.constraints.accelerations != NULL)
+    instance->singular = lagrangian.constraints.accelerations(&point, resolution->acceleration);
+  else instance->singular = lagrangian.derivatives(&point, resolution->derivative);
+  if (instance->singular != 0) return false;
+  resolution->switches->switching_values(&point, resolution_accelerations(resolution), value);
+  return true;
+}
+
+bool resolution_values(struct Resolution *resolution, const double *state, double *value) {
+  return resolution_values_near(resolution, resolution->time, state, value);
+}
+
+void resolution_values_of_force(const struct Resolution *resolution, const struct Point *point, size_t constraint,
+                                double force, double *value) {
+  size_t n = lagrangian.coordinate_count, constraints = lagrangian.constraints.count;
+  memset(resolution->acceleration, 0, (n + constraints) * sizeof *resolution->acceleration);
+  if (constraint < constraints) resolution->acceleration[n + constraint] = force;
+  resolution->switches->switching_values(point, resolution->acceleration, value);
+}
+
+static void add_error_bound(struct Resolution *resolution, size_t slot, double error_bound) {
+  resolution->error_bound[slot] = fmax(resolution->error_bound[slot], error_bound);
+}
+
+/* Relative rounding error bound of time, in units of DBL_EPSILON. */
+static const double time_rounding = 8.0;
+
+/* Rounding error of a velocity after a jump, relative to its size before: the equations may be nearly singular. */
+static const double rounding_of_jumps = 1e-11;
+
+static void measure_velocity(struct Resolution *resolution, size_t slot) {
+  resolution->largest[slot] = fmax(resolution->largest[slot], fabs(resolution->value[slot]));
+  add_error_bound(resolution, slot, rounding_of_jumps * resolution->largest[slot]);
+}
+
+/* Evaluates the values at a perturbed state and time; the factor gives rounding error bounds from their changes. */
+static bool values_rounded(struct Resolution *resolution, bool otherwise, double *value, double *factor) {
+  *factor = round_state(resolution->state, otherwise, resolution->rounded);
+  double change = time_rounding / *factor * DBL_EPSILON * (otherwise ? -1.0 : 1.0);
+  return resolution_values_near(resolution, resolution->time * (1.0 + change), resolution->rounded, value);
+}
+
+/* Adds rounding errors of the values' operations, which perturbations of the state miss where large terms cancel. */
+static void take_rounding_bounds(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  double *rounding = resolution->rounding;
+  indicator_rounding_bounds(resolution->instance, resolution->time, resolution->state,
+                            resolution_accelerations(resolution), rounding);
+  for (size_t i = 0; i < switches->branch_count; i++) add_error_bound(resolution, i, rounding[i]);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    add_error_bound(resolution, contact_slot(switches, i, CONTACT_GAP), rounding[contact_indicator(switches, i)]);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    add_error_bound(resolution, friction_slot(switches, i, FRICTION_VELOCITY),
+                    rounding[friction_indicator(switches, i)]);
+}
+
+static double holding_force(const struct Resolution *resolution, size_t friction) {
+  size_t constraint = resolution->switches->frictions[friction].constraint;
+  return resolution->acceleration[lagrangian.coordinate_count + constraint];
+}
+
+/* Perturbs in two patterns, so that the errors cannot cancel in both; the second one is evaluated once per event. */
+bool resolution_evaluate(struct Resolution *resolution) {
+  size_t count = resolution_value_count(resolution->switches);
+  double *error_bound = resolution->error_bound, *other = resolution->other_error_bound, factor, other_factor = 0.0;
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  if (!values_rounded(resolution, false, error_bound, &factor)) return false;
+  for (size_t i = 0; i < resolution->switches->friction_count; i++)
+    resolution->force_error_bound[i] = holding_force(resolution, i);
+  bool is_first = !resolution->is_evaluated;
+  for (size_t i = 0; i < resolution->switches->friction_count && is_first; i++)
+    resolution->began[i] = mode_of(resolution, resolution->switches->frictions[i].mode);
+  if (is_first && !values_rounded(resolution, true, other, &other_factor)) return false;
+  if (!resolution_values(resolution, resolution->state, resolution->value)) return false;
+  for (size_t i = 0; i < count; i++) {
+    if (is_first) other[i] = other_factor * fabs(other[i] - resolution->value[i]);
+    double change = fmax(factor * fabs(error_bound[i] - resolution->value[i]), other[i]);
+    error_bound[i] = isfinite(change) ? change : 0.0;
+  }
+  for (size_t i = 0; i < resolution->switches->friction_count; i++)
+    resolution->force_error_bound[i] = factor * fabs(resolution->force_error_bound[i] - holding_force(resolution, i));
+  take_rounding_bounds(resolution);
+  resolution->is_evaluated = true;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    measure_velocity(resolution, contact_slot(resolution->switches, i, CONTACT_RATE));
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) {
+    size_t velocity = friction_slot(resolution->switches, i, FRICTION_VELOCITY), rate = velocity + FRICTION_RATE;
+    measure_velocity(resolution, velocity);
+    resolution->largest[rate] = fmax(resolution->largest[rate], fabs(resolution->value[rate]));
+  }
+  return true;
+}
+
+double resolution_error_bound(const struct Resolution *resolution, size_t slot, size_t rate) {
+  double change = time_rounding * DBL_EPSILON * fabs(resolution->time * resolution->value[rate]);
+  return resolution->error_bound[slot] + (isfinite(change) ? change : 0.0);
+}
+
+void resolution_set_observing_mode(struct Resolution *resolution, size_t mode, double value) {
+  resolution->instance->parameter[mode] = value;
+  resolution->instance->parameter_constants_are_stale = true;
+  resolution->changed = true;
+}
+
+void resolution_set_mode(struct Resolution *resolution, size_t mode, double value) {
+  resolution_set_observing_mode(resolution, mode, value);
+  resolution->last.friction = resolution->switches->friction_count;
+}
+
+static double *modes_of(const struct Resolution *resolution) {
+  return resolution->instance->parameter + lagrangian.parameter_count - resolution->switches->mode_count;
+}
+
+void resolution_keep_modes(struct Resolution *resolution) {
+  memcpy(resolution->kept_modes, modes_of(resolution), resolution->switches->mode_count * sizeof(double));
+}
+
+void resolution_restore_modes(struct Resolution *resolution) {
+  memcpy(modes_of(resolution), resolution->kept_modes, resolution->switches->mode_count * sizeof(double));
+  resolution->instance->parameter_constants_are_stale = true;
+}
+
+bool resolution_project_velocities(struct Resolution *resolution) {
+  struct Instance *instance = resolution->instance;
+  double *velocity = resolution->state + lagrangian.coordinate_count;
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(instance, resolution->time, resolution->state);
+  instance->singular = lagrangian.constraints.correct_velocities(&point, resolution->correction);
+  if (instance->singular != 0 || !are_finite(resolution->correction, lagrangian.coordinate_count)) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += resolution->correction[i];
+  resolution->changed = true;
+  return true;
+}
+
+bool resolution_moves(const struct Resolution *resolution, size_t constraint) {
+  const double *slope = resolution->correction + lagrangian.coordinate_count + 2 * lagrangian.constraints.count;
+  return slope[constraint] > 0.0;
+}
+
+bool resolution_project_coordinates(struct Resolution *resolution) {
+  struct Instance *instance = resolution->instance;
+  memset(resolution->rounded, 0, lagrangian.state_count * sizeof *resolution->rounded);
+  if (evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(instance, resolution->time, resolution->state);
+  struct Seed seed = {.state = resolution->rounded};
+  bool keeps_fixed = resolution->occasion == AT_START && lagrangian.constraints.coordinate_is_fixed != NULL;
+  instance->singular = (keeps_fixed ? lagrangian.constraints.start_positions
+                                    : lagrangian.constraints.correct_positions)(&point, &seed, resolution->correction);
+  if (instance->singular != 0 || !are_finite(resolution->correction, lagrangian.coordinate_count)) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) resolution->state[i] += resolution->correction[i];
+  resolution->changed = true;
+  return true;
+}

@@ -1,0 +1,246 @@
+/*
+ * Event resolution: consistent modes, velocities and state after an event. Several mechanisms may act at once: impacts
+ * and contacts that close or open, pieces of functions, frictions that stick or slip, and <event> elements. Each round
+ * evaluates everything and tries the mechanisms in the order of actions[], up to the first that changes something. The
+ * rounds end when none does: then all modes agree with the state. A mode that keeps switching is an error of its own,
+ * and so are more than ROUND_LIMIT rounds. A round costs a few evaluations of the accelerations, which also bound their
+ * rounding errors.
+ *
+ * Then velocities are projected onto the constraints, and the result is checked. Energies and positions must not
+ * jump where no event sets them, and contacts and frictions must obey their laws.
+ */
+#include "nonsmooth/resolve.h"
+
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "nonsmooth/branches.h"
+#include "nonsmooth/conditions.h"
+#include "nonsmooth/continuity.h"
+
+/* Rounds after which an event resolution fails. Impacts alone take up to IMPACT_LIMIT rounds (contacts.c). */
+enum { ROUND_LIMIT = 2000 };
+
+static const char no_accelerations[] = "the accelerations do not exist after an event",
+                  no_first_accelerations[] = "the accelerations do not exist";
+
+static const char *act_by_contacts(struct Resolution *resolution, bool *again) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  return laws != NULL ? laws->act(resolution, again) : NULL;
+}
+
+static const char *switch_pieces(struct Resolution *resolution, bool *again) {
+  return branches_switch(resolution, false, again);
+}
+
+static const char *act_by_frictions(struct Resolution *resolution, bool *again) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  const char *problem = laws != NULL ? laws->act(resolution, again) : NULL;
+  resolution->lags |= *again && resolution->occasion != AT_START;
+  return problem;
+}
+
+static const char *resolve_contact_forces(struct Resolution *resolution, bool *again) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  return laws != NULL ? laws->resolve_forces(resolution, again) : NULL;
+}
+
+static const char *let_touching_share(struct Resolution *resolution, bool *again) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  return laws != NULL ? laws->share_load(resolution, again) : NULL;
+}
+
+static const char *report_friction_modes(struct Resolution *resolution, bool *again) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  return laws == NULL || laws->report(resolution, again) ? NULL : no_accelerations;
+}
+
+/* Finds which velocities rest, before pieces switch by them; sets *again if any stops or leaves rest. */
+static const char *find_resting_velocities(struct Resolution *resolution, bool *again) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (switches->find_resting == NULL) return NULL;
+  switches->find_resting(resolution);
+  for (size_t i = 0; i < switches->resting_count; i++) {
+    size_t mode = switches->resting[i].mode;
+    bool rests = resolution->moves[i] == VELOCITY_RESTS, rested = mode_of(resolution, mode) == VELOCITY_RESTS;
+    /* No function distinguishes velocities that accelerate from others that move. */
+    resolution->instance->parameter[mode] = resolution->moves[i];
+    if (rests == rested) continue;
+    resolution_set_observing_mode(resolution, mode, resolution->moves[i]);
+    if (rests) resolution->has_rested = true;
+    else resolution->has_left_rest = true;
+    *again = true;
+  }
+  return NULL;
+}
+
+/* Sets velocities at rest to 0: projections leave rounding errors, and methods errors in prescribed motions. */
+static void set_resting_velocities(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->resting_count && resolution->changed; i++) {
+    const struct RestingMetadata *resting = &switches->resting[i];
+    if (resting->kind != RESTING_SUM && mode_of(resolution, resting->mode) == VELOCITY_RESTS)
+      resolution->state[lagrangian.coordinate_count + resting->index] = 0.0;
+  }
+}
+
+/*
+ * Switches the signs of the expressions of events. An importer comes to an event late: velocities that stick from it on
+ * are brought to rest first.
+ */
+static const char *switch_last_signs(struct Resolution *resolution, bool *again) {
+  if (!resolution->switches->has_last_signs) return NULL;
+  if (!resolution->lags) return branches_switch(resolution, true, again);
+  resolution->lags = false;
+  *again = true;
+  return resolution_project_velocities(resolution) ? NULL : constraints_not_kept;
+}
+
+/* The mechanisms that a round tries in turn, up to the first that changes something. */
+static const char *(*const actions[])(struct Resolution *resolution, bool *again) = {
+    act_by_contacts,    find_resting_velocities, switch_pieces,     act_by_frictions, resolve_contact_forces,
+    let_touching_share, report_friction_modes,   switch_last_signs, conditions_happen};
+enum { ACTION_COUNT = sizeof actions / sizeof *actions };
+
+/* Makes one round; sets *again if it changed something. */
+static const char *resolve_once(struct Resolution *resolution, bool *again) {
+  const char *problem = NULL;
+  *again = false;
+  for (int i = 0; i < ACTION_COUNT && problem == NULL && !*again; i++) problem = actions[i](resolution, again);
+  return problem;
+}
+
+static const char *resolve_in_rounds(struct Resolution *resolution) {
+  const char *problem = NULL;
+  bool again = true;
+  for (int round = 0; problem == NULL && again; round++) {
+    if (round == ROUND_LIMIT) return "events follow each other without end (Zeno behaviour)";
+    if (!resolution_evaluate(resolution)) return no_accelerations;
+    if (round == 0) conditions_begin(resolution);
+    problem = resolve_once(resolution, &again);
+  }
+  return problem;
+}
+
+/* Sets the modes to the signs of the start values, or projects the state that the solver has left. */
+static const char *begin_resolution(struct Resolution *resolution) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  if (resolution->occasion != AT_START) return continuity_begin(resolution);
+  if (!branches_begin(resolution)) return no_first_accelerations;
+  if (laws == NULL) return NULL;
+  if (!laws->lift_start(resolution) || !branches_begin(resolution)) return constraints_not_kept;
+  return laws->check_gaps(resolution);
+}
+
+/* Projects velocities that have jumped onto the constraints. */
+static const char *push(struct Resolution *resolution) {
+  bool has_to_keep = resolution->jumped && lagrangian.constraints.projection != NULL;
+  return has_to_keep && !resolution_project_velocities(resolution) ? constraints_not_kept : NULL;
+}
+
+/* Checks contacts and frictions after an event. Returns NULL, or the violated law. */
+static const char *check_laws(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  const char *problem = NULL;
+  if (switches->contact_laws != NULL && (resolution->moved || may_change_gaps(resolution)))
+    problem = switches->contact_laws->check_gaps(resolution);
+  if (problem == NULL && switches->friction_laws != NULL) problem = switches->friction_laws->check(resolution);
+  return problem;
+}
+
+/*
+ * Projects the state for the final modes: the last forces may be those of modes that were tried. An importer that
+ * integrates projects its state itself, in event mode.
+ */
+static const char *keep_on_constraints(const struct Resolution *resolution) {
+  bool has_to_keep = resolution->occasion != AT_START && resolution->occasion != IN_EXCHANGE;
+  if (!resolution->changed || !has_to_keep) return NULL;
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return constraints_not_kept;
+  return solver_project(resolution->instance, resolution->time, resolution->state);
+}
+
+bool resolve_explain(struct Instance *instance, double time, double *state) {
+  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  if (laws == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
+  struct Resolution resolution = resolution_at(instance, time, state, AT_CHANGE);
+  struct Point point = solver_point(instance, time, state);
+  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
+  /* Near a jam, forces may be too large to be determined: evaluate without them. */
+  memset(resolution.acceleration, 0, rows * sizeof *resolution.acceleration);
+  memset(resolution.error_bound, 0, resolution_value_count(lagrangian.switches) * sizeof *resolution.error_bound);
+  lagrangian.switches->switching_values(&point, resolution.acceleration, resolution.value);
+  return laws->explain(&resolution);
+}
+
+/* Logs a friction that jams a contact or a constraint, as where the equations become singular. False if none does. */
+static bool explain_jam(struct Resolution *resolution) {
+  struct Instance *instance = resolution->instance;
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  int singular = instance->singular;
+  bool behind_start = resolution->occasion != AT_START;
+  bool jams = (behind_start && resolve_explain(instance, resolution->time, resolution->state)) ||
+              (singular != 0 && laws != NULL && laws->explain_jam(resolution, resolution->switches->branch_count));
+  instance->singular = jams ? 0 : singular;
+  return jams;
+}
+
+/* Logs that accelerations are missing for the frictions. A singular mass matrix is reported as such. */
+static void report_missing_for_frictions(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (switches->friction_count > 0 && resolution->instance->singular == 0)
+    switches->friction_laws->report_missing(resolution, "accelerations");
+}
+
+/* Returns the mode of a contact or, after those, of a friction; one in a plane only slides, 1, or sticks, 0. */
+static double switching_mode(const struct Resolution *resolution, size_t i) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t friction = i - switches->contact_count;
+  if (i < switches->contact_count) return mode_of(resolution, switches->contacts[i].mode);
+  double mode = mode_of(resolution, switches->frictions[friction].mode);
+  return is_in_plane(switches, friction) ? mode * mode : mode;
+}
+
+static size_t switching_count(const struct SwitchTable *switches) {
+  return switches->contact_count + switches->friction_count;
+}
+
+/* Logs the name of each contact that switched or was struck, and of each friction that switched. */
+static void log_switches(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t contacts = switches->contact_count;
+  for (size_t i = 0; i < switching_count(switches); i++) {
+    bool is_struck = i < contacts && resolution->struck[i] != 0.0;
+    const char *name = i < contacts ? switches->contacts[i].name : switches->frictions[i - contacts].name;
+    if (switching_mode(resolution, i) != resolution->first_mode[i] || is_struck)
+      log_message(resolution->instance, STATUS_DONE, "time %.17g: '%s' switches", resolution->time, name);
+  }
+}
+
+const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
+                    bool *changed) {
+  struct Resolution resolution = resolution_at(instance, time, state, occasion);
+  resolution.indicator = indicator;
+  resolution.is_departure = occasion == AT_EVENT && indicator < resolution.switches->branch_count &&
+                            mode_of(&resolution, resolution.switches->branches[indicator].mode) == 0.0;
+  for (size_t i = 0; i < switching_count(resolution.switches); i++)
+    resolution.first_mode[i] = switching_mode(&resolution, i);
+  const char *problem = begin_resolution(&resolution);
+  if (problem == NULL) problem = resolve_in_rounds(&resolution);
+  bool is_missing = problem == no_accelerations || problem == no_first_accelerations;
+  bool is_explained = is_missing && explain_jam(&resolution);
+  if (problem == no_accelerations && !is_explained) report_missing_for_frictions(&resolution);
+  if (problem == NULL) problem = branches_check(&resolution);
+  if (problem == NULL) problem = push(&resolution);
+  if (problem == NULL) problem = continuity_check(&resolution);
+  if (problem == NULL) problem = check_laws(&resolution);
+  if (problem == NULL) problem = keep_on_constraints(&resolution);
+  if (problem == NULL) problem = continuity_check_corner(&resolution);
+  if (problem == NULL) set_resting_velocities(&resolution);
+  if (resolution.changed && occasion != AT_START) {
+    instance->fmu_state->statistics[STATISTIC_EVENTS]++;
+    if (problem == NULL) log_switches(&resolution);
+  }
+  *changed = resolution.changed;
+  return problem;
+}
