@@ -131,7 +131,21 @@ def test_endless_errors(tmp_path):
     assert seconds_of_children() - before < MOST_SECONDS
 
 
+def heap(count, contact):
+    """Return `count` spheres on a floor, of which any two may touch."""
+    spheres = [
+        f'<coordinate name="x{k}" velocity="u{k}"/><coordinate name="y{k}" velocity="v{k}"/><coordinate name="z{k}" velocity="w{k}" start="{k + 1}"/>'
+        f'<particle name="p{k}" mass="m" x="x{k}" y="y{k}" z="z{k}"/><shape name="s{k}" in="p{k}" type="sphere" radius="0.1"/>'
+        for k in range(count)
+    ]
+    pairs = [(f"s{k}", other) for k in range(count) for other in ["floor", *(f"s{j}" for j in range(k))]]
+    contacts = [f'<contact name="c{i}" between="{one}" and="{other}" {contact}/>' for i, (one, other) in enumerate(pairs)]
+    return '<shape name="floor" type="plane"/>' + "".join(spheres + contacts)
+
+
 FINE = {
+    "8 spheres with friction": heap(8, 'restitution="0" friction="0.5"'),
+    "30 spheres": heap(30, 'restitution="0"'),
     "negations in a row": '<force coordinate="x">if(' + "not " * 200000 + "x &gt; 0, 1, 2)</force>",
     "a quotient whose division leaves the numbers": '<particle mass="m" y="1/(x+1e200)" x="x"/>',
     "a division that ends below the numbers": '<particle mass="m" y="(1e-200*x + 1e-180)/(1e200*x + 1e190)" x="x"/>',

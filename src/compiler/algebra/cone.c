@@ -42,7 +42,7 @@ static void grow(struct Cone *cone, size_t capacity) {
   cone->capacity = capacity;
 }
 
-/* Steps of graph_work() for a visit, with the algebra that follows it. */
+/* Steps of graph_work() for a visit, with the algebra that follows it; a collection that ended early has none. */
 enum { VISIT_WORK = 8 };
 
 /* Sorts the members, by a loop over all nodes between the first and the last if one in SPARSENESS is a member. */
@@ -85,7 +85,7 @@ bool cone_collect_part(struct Cone *cone, const struct Graph *graph, const Node 
     if (arity > 0) add(cone, vertex->left);
     if (arity == 2) add(cone, vertex->right);
   }
-  cone->work += VISIT_WORK * cone->count;
+  cone->work += (ended ? 1 : VISIT_WORK) * cone->count;
   if (ended) cone->count = 0;
   sort(cone);
   return !ended;

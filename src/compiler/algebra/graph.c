@@ -90,6 +90,10 @@ void graph_work(const struct Graph *graph, size_t steps) {
   graph->cone->work += steps;
 }
 
+bool graph_has_to_save_work(const struct Graph *graph) {
+  return graph->cone->work > WORK_LIMIT / 2;
+}
+
 _Static_assert(NODE_LIMIT == 4000000 && WORK_LIMIT == 100000000, "the texts of graph_limit() name the limits");
 
 const char *graph_limit(const struct Graph *graph) {

@@ -112,9 +112,10 @@ static char *text_of_form(struct Display *display, Node node, enum ProductExpans
   return text;
 }
 
-/* Returns the shortest of the forms of a node; NULL if all are too large. */
+/* Returns the shortest of the forms of a node; NULL if all are too large, or their search would take too many steps. */
 static char *shortest_text(struct Display *display, Node node, bool is_whole) {
   static const enum ProductExpansion expansions[] = {EXPAND_QUADRATIC, EXPAND_ALL, EXPAND_NONE};
+  if (graph_has_to_save_work(display->graph)) return NULL;
   Node reduced = simplify_fraction(display->graph, node);
   char *best = NULL;
   double least = INFINITY;

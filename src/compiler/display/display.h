@@ -5,7 +5,8 @@
  * rounding.
  *
  * The text is the shortest of several: with and without products that are multiplied out (terms.h), and as a reduced
- * fraction. Expressions beyond the limits of terms.h keep the form of formula.h.
+ * fraction. Expressions beyond the limits of terms.h, and those of systems that take many steps, keep the form of
+ * formula.h.
  */
 #pragma once
 

@@ -11,9 +11,6 @@ int compare_positions(const void *first, const void *second) {
   return order != 0 ? order : compare_sizes(&a->row, &b->row);
 }
 
-/* Steps of graph_work() for each item of two joined sets, with its memory. */
-enum { JOIN_WORK = 4 };
-
 /* The neighbours of a row in the elimination graph, ascending. */
 struct NeighbourSet {
   size_t *items;
@@ -105,7 +102,7 @@ static void eliminate_rows(const struct Graph *graph, size_t count, size_t late,
     order[next++] = waiting.row;
     for (size_t i = 0; i < set->count; i++) {
       size_t row = set->items[i];
-      graph_work(graph, JOIN_WORK * (sets[row].count + set->count));
+      graph_work(graph, sets[row].count + set->count);
       join(&sets[row], row, set, waiting.row);
       push(&queue, (struct QueueEntry){sets[row].count, row});
     }
