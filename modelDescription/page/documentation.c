@@ -57,15 +57,6 @@ static void write_verbatim(const struct Page *page, const char *name, const char
   xmlTextWriterEndElement(page->writer);
 }
 
-/* Returns the names of the forces of constraints that are multipliers, separated by spaces. */
-static char *multipliers_of(const struct Model *model) {
-  struct TextStream text;
-  FILE *file = open_text(&text);
-  for (size_t i = 0; i < model->constraints.count; i++)
-    if (model->constraints.items[i].force_name == NULL) fprintf(file, "%s.force ", model->constraints.items[i].name);
-  return close_text(&text);
-}
-
 static void write_head(const struct Page *page) {
   static const char *const metas[][2] = {{"viewport", "width=device-width, initial-scale=1"},
                                          {"color-scheme", "light dark"}};
@@ -113,7 +104,6 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
   xmlTextWriterStartElement(writer, BAD_CAST "body");
   write_contents(page);
   xmlTextWriterStartElement(writer, BAD_CAST "main");
-  write_attribute(writer, "data-multipliers", multipliers_of(page->model));
   page_element(page, "h1", page->model->name);
   if (page->model->description != NULL) page_paragraph(page, page->model->description);
   write_sketch(page->writer, page->drawing);

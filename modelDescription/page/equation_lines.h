@@ -15,8 +15,8 @@ void write_equations(struct Page *page);
  *  multiplier   name of a constraint's force, name of the constraint
  *  contact      name of its constraint, name of the mode that is 1 while it is closed; likewise friction, and its mode
  *  heading, text, step      text
- *  equation     label, left side, right side
- *  line         left side, right side of an equation of the derivation; "..." if it is long
+ *  equation     label, left side, right side, and the equation in LaTeX, which is empty if it is long
+ *  line         the same without a label, for an equation of the derivation; "..." is a long right side
  */
 void equations_print(FILE *file, const struct Model *model, const struct Equations *equations,
                      const struct Summary *summary);

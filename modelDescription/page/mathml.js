@@ -1,236 +1,188 @@
-// Typesets formulas as MathML, which browsers show without a library.
+// Converts LaTeX of latex.c to MathML, which browsers show without a library, by recursive descent.
 //
-// Browsers do not break lines inside <math>, so that a wide formula becomes several <math> elements with <wbr> between them. A part up to
-// NARROW letters wide is set as a whole (set); a wider one is split at its operator, and its operands likewise (setInPieces). Wide fractions
-// and powers are rewritten on one line, as a <math> element cannot contain a break. Each node is visited once.
+// Browsers do not break lines inside <math>, so that a wide formula becomes several <math> elements with <wbr> between them. Each part has a
+// form on one line, and one in pieces: its signs, factors and arguments may begin lines. Wide fractions, powers, roots and cases are rewritten
+// in pieces, as a <math> element cannot contain a break. Reads each character once.
 
 const MATH = '<math display="inline" displaystyle="true">', BREAK = `</math><wbr/>${MATH}`;
 const NARROW = 20; // letters of a part without breaks, which fits on a phone
 const NARROW_CASES = 28; // the same for cases, which would become if(c, a, b)
-const LONGEST = 3000; // characters of an equation; longer ones stay texts
 
-const GREEK = Object.fromEntries(
-  ("alpha α beta β gamma γ delta δ epsilon ε zeta ζ eta η theta θ kappa κ lambda λ mu μ nu ν xi ξ pi π rho ρ sigma σ tau τ phi φ chi χ psi ψ " +
-    "omega ω Gamma Γ Delta Δ Theta Θ Lambda Λ Xi Ξ Pi Π Sigma Σ Phi Φ Psi Ψ Omega Ω").match(/\w+ \S/g).map(pair => pair.split(" ")),
-);
-const UPRIGHT = new Set(["sin", "cos", "tan", "sinh", "cosh", "tanh"]); // functions of a name without parentheses
-const DOTS = ["", "˙", "¨"];
-const THIN = '<mspace width="0.17em"></mspace>', APPLIED = "<mo>&#x2061;</mo>";
+const FUNCTION = /^(?:(?:sin|cos|tan)h?|log|exp|min|max)$/; // other commands without arguments are Greek letters
+const DOTS = { "\\dot": "˙", "\\ddot": "¨" };
+const TOKEN = /\\(?:left|right).|\\[A-Za-z]+|\\.|\d+(?:\.\d+)?|\S/g;
 
-// * Splits a name into a base and its indices: theta1, theta[1] and omegaCoupler become Greek letters with an index, and x_end gets one too. The
-// part of the system that a name belongs to is the last index, and loop.force is F with the constraint's name.
-function symbolOf(name) {
-  const [, part, last] = name.match(/^(?:(.*)\.)?([^.]*)$/), [word, bracket] = last.split(/[[\]]/);
-  const [, stem, digits] = bracket === undefined && !/(^|_)\d+$/.test(word) ? word.match(/^(.*?)(\d*)$/) : [, word, ""];
-  const camel = stem.match(/^([A-Za-z]+?)([A-Z].*)$/), snake = stem.match(/^(.[^_]*)_(.+)$/);
-  const [, base, index] = (camel && camel[1] in GREEK && camel) || snake || [stem, stem];
-  return { base: part && last === "force" ? "F" : base, indices: [index, digits, bracket, part].filter(Boolean) };
-}
+const THIN = '<mspace width="0.17em"></mspace>';
+const TIMES = { "\\,": `<mo>&#x2062;</mo>${THIN}`, "\\cdot": "<mo>⋅</mo>" };
+const infix = text => `<mo form="infix">${text}</mo>`;
+const SIGNS = { "+": infix("+"), "-": infix("−"), "=": infix("="), ">": "<mo>&gt;</mo>", ",": "<mo>,</mo>" };
+const MINUS = '<mo form="prefix">−</mo>'; // of a first term
+const ENDS = new Set([undefined, "}", ")", "\\right)", "\\right|", "&", "\\\\", "\\end"]);
 
-function widthOfName(name) {
-  const { base, indices } = symbolOf(name);
-  return (base in GREEK ? 1 : base.length) + 0.7 * indices.join("").length;
-}
+// A part with its MathML on one line, its width in letters, and its MathML in pieces, which a narrow part does not have.
+const part = (html, width, wide = html, limit = NARROW) => ({ html, width, pieces: width <= limit ? html : wide });
 
-// Typesets a name with 0, 1 or 2 dots for time derivatives; with an exponent above its indices, if it has any.
-function setName(name, dots = 0, exponent = "") {
-  const { base, indices } = symbolOf(name), letter = `<mi>${GREEK[base] ?? base}</mi>`;
-  const dotted = dots ? `<mover accent="true">${letter}<mo>${DOTS[dots]}</mo></mover>` : letter;
-  if (indices.length === 0) return dotted;
-  const index = text => (/^\d/.test(text) ? `<mn>${text}</mn>` : `<mtext>${text}</mtext>`);
-  const row = `<mrow>${indices.map(index).join("<mo>,</mo>")}</mrow>`;
-  return exponent ? `<msubsup>${dotted}${row}<mrow>${exponent}</mrow></msubsup>` : `<msub>${dotted}${row}</msub>`;
-}
+const sumOf = numbers => numbers.reduce((sum, number) => sum + number, 0);
+const slices = html => html.replace(/<[^>]*>/g, "").match(new RegExp(`.{1,${NARROW}}`, "g")).map(text => `<mi>${text}</mi>`).join(BREAK);
+const letters = (html, width) => part(html, width, slices(html));
+const word = text => letters(`<mi mathvariant="normal">${text}</mi>`, text.length);
 
-// * Returns the ratio that a number with at least 14 characters stands for, as integrals give them: a multiple of 1/3 .. 1/45 to 1e-13. Returns
-// undefined for other numbers.
-function ratioOf(word) {
-  if (word.length < 14 || word.includes("e")) return undefined;
-  for (let below = 3; below <= 45; below++) {
-    const product = word * below, above = Math.round(product);
-    if (above >= 1 && Math.abs(product - above) <= 1e-13 * above) return `<mfrac><mn>${above}</mn><mn>${below}</mn></mfrac>`;
-  }
-  return undefined;
-}
-
-// Typesets 4e-05 as 4 times a power of ten.
-function setNumber(word) {
-  const [mantissa, exponent] = word.split("e"), sign = exponent < 0 ? "<mo>−</mo>" : "";
-  const power = exponent && `<mo>⋅</mo><msup><mn>10</mn><mrow>${sign}<mn>${Math.abs(exponent)}</mn></mrow></msup>`;
-  return ratioOf(word) ?? `<mn>${mantissa}</mn>${power ?? ""}`;
-}
-
-// True if a formula needs no parentheses as a factor or term, and as the base of a power.
-const standsAsFactor = ({ kind }) => !["sum", "negative", "condition"].includes(kind);
-const standsAsBase = ({ kind }) => ["number", "name", "call", "ellipsis"].includes(kind);
-
-// True for sin²(...).
-const isPowerOfFunction = ({ kind, parts }) => kind === "power" && parts[1].kind === "number" && parts[0].kind === "call" && UPRIGHT.has(parts[0].word);
-
-// True for sin x and sin² x, whose argument is a name.
-function standsBare(formula) {
-  const { kind, word, parts } = isPowerOfFunction(formula) ? formula.parts[0] : formula;
-  return kind === "call" && parts.length === 1 && parts[0].kind === "name" && UPRIGHT.has(word);
-}
-
-// A parenthesis has a fixed height, as its counterpart may be in another <math> element.
-function parenthesis(text, isTall) {
+// Returns a part in parentheses of a fixed height, as its counterpart may be in another <math> element.
+function fenced(inside, isTall) {
   const size = isTall ? 'minsize="2.2em" maxsize="2.2em"' : 'stretchy="false"';
-  return `<mo form="${text === "(" ? "prefix" : "postfix"}" ${size}>${text}</mo>`;
+  const open = `<mo form="prefix" ${size}>(</mo>`, close = `<mo form="postfix" ${size}>)</mo>`;
+  return { ...part(`<mrow>${open}${inside.html}${close}</mrow>`, inside.width + 2, open + inside.pieces + close), open: open + inside.pieces, close };
 }
 
-const inParentheses = (content, isTall) => parenthesis("(", isTall) + content + parenthesis(")", isTall);
+// Returns the pieces of word(a, b).
+const callOf = (name, ...parts) => word(name).html + fenced({ pieces: parts.map(({ pieces }) => pieces).join(SIGNS[","] + BREAK) }).pieces;
 
-// Returns the formula by a typesetting function, in parentheses unless it stands without.
-const fenced = (formula, stands, by) => (stands(formula) ? by(formula) : inParentheses(by(formula), formula.isTall));
-
-const setFunction = word => `<mi mathvariant="normal">${word}</mi>`;
-
-// Returns the sign before a term, and the term without it.
-function signed(term, isFirst) {
-  if (term.kind === "negative") return [`<mo form="${isFirst ? "prefix" : "infix"}">−</mo>`, term.parts[0]];
-  return [isFirst || term.kind === "ellipsis" ? "" : '<mo form="infix">+</mo>', term];
+// Returns a fraction; in pieces, a wide numerator stands after it, and a wide denominator after a slash.
+function fraction(above, below) {
+  const html = `<mfrac><mrow>${above.html}</mrow><mrow>${below.html}</mrow></mfrac>`, times = TIMES[above.hasNumber ? "\\cdot" : "\\,"];
+  const numerator = above.isSum ? fenced(above).pieces : above.pieces, isNumber = /^<mn>[^<]*<.mn>$/.test(below.html);
+  const before = `<mfrac><mn>1</mn><mrow>${below.html}</mrow></mfrac>${times}${isNumber ? "" : BREAK}`;
+  const wide = below.width > NARROW ? numerator + BREAK + infix("/") + fenced(below).pieces : before + numerator;
+  return { ...part(html, Math.max(above.width, below.width) + 0.5, wide), hasNumber: above.hasNumber };
 }
 
-// Returns the operator before a factor: a thin space, or a dot before a number.
-function timesBefore(factor) {
-  while (["power", "product", "fraction"].includes(factor.kind)) factor = factor.parts[0];
-  return factor.kind === "number" ? "<mo>⋅</mo>" : `<mo>&#x2062;</mo>${THIN}`;
+// Returns a part with an index and an exponent, of which either may be absent.
+function scripted(base, below, above) {
+  if (!below && !above) return base;
+  const tag = below ? (above ? "msubsup" : "msub") : "msup", scripts = [below, above].filter(Boolean);
+  const rows = scripts.map(({ html }) => `<mrow>${html}</mrow>`).join(""), html = `<${tag}>${base.html}${rows}</${tag}>`;
+  const width = base.width + 0.7 * sumOf(scripts.map(script => script.width)) + (above ? 1 : 0);
+  const power = base.open && above.width <= NARROW / 2 && `${base.open}<msup>${base.close}${rows}</msup>`;
+  return { ...part(html, width, power || (above ? callOf("pow", base, above) : slices(html))), isFunction: base.isFunction, hasNumber: base.hasNumber };
 }
 
-// Typesets the cases of if(c, a, if(d, b, e)), one in each row, with a brace before them.
-function setCases(formula) {
-  const rows = [];
-  for (; isChoice(formula); formula = formula.parts[2])
-    rows.push(`<mtr><mtd>${set(formula.parts[1])}</mtd><mtd><mtext>if&#xa0;</mtext>${set(formula.parts[0])}</mtd></mtr>`);
-  rows.push(`<mtr><mtd>${set(formula)}</mtd><mtd><mtext>else</mtext></mtd></mtr>`);
-  return `<mrow><mo form="prefix" stretchy="true">{</mo><mtable>${rows.join("")}</mtable></mrow>`;
+// Returns cases with a brace before them; in pieces, if(c, a, if(d, b, e)).
+function casesOf(rows) {
+  const cell = html => `<mtd>${html}</mtd>`, condition = when => (when ? `<mtext>if&#xa0;</mtext>${when.html}` : "<mtext>else</mtext>");
+  const table = rows.map(([value, when]) => `<mtr>${cell(value.html)}${cell(condition(when))}</mtr>`).join("");
+  const nested = rows.reduceRight((other, [value, when]) => (when ? { pieces: callOf("if", when, value, other) } : value), null);
+  const width = Math.max(...rows.map(([value, when]) => value.width + (when?.width ?? 0))) + 4;
+  return part(`<mrow><mo form="prefix" stretchy="true">{</mo><mtable>${table}</mtable></mrow>`, width, nested.pieces, NARROW_CASES);
 }
 
-const setArguments = parts => parts.map(set).join("<mo>,</mo>");
-const argumentsOf = ({ parts, isTall }) => inParentheses(setArguments(parts), isTall);
+class Reader {
+  constructor(latex) {
+    this.tokens = latex.match(TOKEN).reverse();
+  }
 
-// Typesets der(x) and der(der(x)) with dots, and other time derivatives as d/dt.
-function setDerivative({ parts: [inside] }) {
-  const [name, dots] = inside.word === "der" ? [inside.parts[0], 2] : [inside, 1];
-  if (name.kind === "name") return setName(name.word, dots);
-  const d = setFunction("d");
-  return `<mfrac>${d}<mrow>${d}<mi>t</mi></mrow></mfrac>${fenced(inside, standsAsFactor, set)}`;
-}
+  get next() {
+    return this.tokens.at(-1);
+  }
 
-const CALLS = {
-  der: setDerivative,
-  diff: ({ parts: [of, by] }) => `<mfrac><mrow><mo>∂</mo>${set(of)}</mrow><mrow><mo>∂</mo>${set(by)}</mrow></mfrac>`,
-  sqrt: ({ parts }) => `<msqrt>${setArguments(parts)}</msqrt>`,
-  abs: ({ parts }) => `<mrow><mo>|</mo>${setArguments(parts)}<mo>|</mo></mrow>`,
-};
+  take(token) {
+    return this.next === token && this.tokens.pop() !== undefined;
+  }
 
-function setCall(formula) {
-  if (isChoice(formula)) return setCases(formula);
-  if (Object.hasOwn(CALLS, formula.word)) return CALLS[formula.word](formula);
-  return setFunctionOf(formula, argumentsOf);
-}
+  // Reads terms, arguments or sides up to the end of a group. In pieces, lines may break before terms and sides, and after commas.
+  row() {
+    const terms = [];
+    while (!ENDS.has(this.next)) {
+      const sign = this.next in SIGNS ? this.tokens.pop() : "", isNegative = sign === "-" ? terms.length === 0 : this.take("-");
+      terms.push({ sign, before: (sign === "-" && isNegative ? "" : SIGNS[sign] ?? "") + (isNegative ? MINUS : ""), ...this.term() });
+    }
+    const [{ before, hasNumber }] = terms, isSum = terms.length > 1 || before !== "", isBroken = ({ sign }, i) => i > 0 && sign !== ">";
+    const wide = terms.map((term, i) => (!isBroken(term, i) ? term.before : term.sign === "," ? term.before + BREAK : BREAK + term.before) + term.pieces);
+    const width = sumOf(terms.map(term => 2 * term.sign.length + term.width));
+    return { ...part(terms.map(term => term.before + term.html).join(""), width, wide.join("")), isSum, hasNumber: hasNumber && before === "" };
+  }
 
-// Typesets a function, or a power of one, with its argument by a typesetting function.
-function setFunctionOf(formula, argument) {
-  const call = formula.kind === "power" ? formula.parts[0] : formula, word = setFunction(call.word);
-  const head = call === formula ? word : `<msup>${word}${set(formula.parts[1])}</msup>`;
-  return `<mrow>${head}${APPLIED}${argument(call)}</mrow>`;
-}
+  // Reads a product; in pieces, a factor for which the line has no room begins the next.
+  term() {
+    const factors = [];
+    while (!ENDS.has(this.next) && !(this.next in SIGNS)) factors.push({ times: this.next in TIMES ? TIMES[this.tokens.pop()] : "", ...this.power() });
+    let room = NARROW;
+    const wide = factors.map(({ times, width, pieces }, i) => {
+      const breaks = i > 0 && width > room;
+      room = (breaks ? NARROW : room) - width;
+      return times + (breaks ? BREAK : "") + pieces;
+    });
+    const width = sumOf(factors.map(factor => factor.width)) + 0.3 * (factors.length - 1);
+    return { ...part(factors.map(({ times, html }) => times + html).join(""), width, wide.join("")), hasNumber: factors[0].hasNumber };
+  }
 
-const setBare = formula => setFunctionOf(formula, call => THIN + set(call.parts[0]));
+  // Reads a part with its scripts, and the argument of a function.
+  power() {
+    const base = this.scripts(this.primary());
+    if (!base.isFunction) return base;
+    const isFenced = /\($/.test(this.next), argument = isFenced ? this.primary() : this.power(), head = `${base.html}<mo>&#x2061;</mo>${isFenced ? "" : THIN}`;
+    return this.scripts(part(`<mrow>${head}${argument.html}</mrow>`, base.width + argument.width, head + argument.pieces));
+  }
 
-function setPower(formula) {
-  const [base, exponent] = formula.parts;
-  if (isPowerOfFunction(formula)) return setFunctionOf(formula, argumentsOf);
-  if (base.kind === "name" && symbolOf(base.word).indices.length > 0) return setName(base.word, 0, set(exponent));
-  return `<msup><mrow>${fenced(base, standsAsBase, set)}</mrow><mrow>${set(exponent)}</mrow></msup>`;
-}
+  scripts(base) {
+    return scripted(base, this.take("_") && this.group(), this.take("^") && this.group());
+  }
 
-// Typesets a factor of a product; only trailing functions stand without parentheses, as other factors must not follow these.
-function setFactor(factors, i) {
-  const factor = factors[i];
-  if (factors.slice(i).every(standsBare)) return setBare(factor);
-  if (factor.kind === "call") return setCall(factor);
-  return factor.kind === "power" ? setPower(factor) : fenced(factor, standsAsFactor, set);
-}
+  primary() {
+    const token = this.tokens.pop(), name = token.slice(1);
+    if (/^\d/.test(token)) return { ...part(`<mn>${token}</mn>`, token.length), hasNumber: true };
+    if (token === "(" || token === "\\left(") return this.fence(token);
+    if (token === "\\left|") return this.bars();
+    if (token === "\\frac") return fraction(this.group(), this.group());
+    if (token === "\\sqrt") return this.root();
+    if (token === "\\begin") return this.cases();
+    if (token === "\\dots") return part("<mo>…</mo>", 2);
+    if (token === "\\partial") return part("<mo>∂</mo>", 1);
+    if (token === "\\mathrm") return word(this.text());
+    if (token === "\\operatorname") return { ...word(this.text()), isFunction: true };
+    if (token in DOTS) return this.dotted(DOTS[token]);
+    if (FUNCTION.test(name)) return { ...word(name), isFunction: true };
+    return part(`<mi>${name ? `&${name};` : token}</mi>`, 1);
+  }
 
-function setTerm(term, i) {
-  const [sign, inside] = signed(term, i === 0);
-  return sign + fenced(inside, standsAsFactor, set);
-}
+  group() {
+    this.take("{");
+    const inside = this.row();
+    this.take("}");
+    return inside;
+  }
 
-const SETTERS = {
-  number: ({ word }) => setNumber(word),
-  name: ({ word }) => setName(word),
-  ellipsis: () => "<mo>…</mo>",
-  call: setCall,
-  condition: ({ parts }) => parts.map(set).join("<mo>&gt;</mo>"),
-  sum: ({ parts }) => parts.map(setTerm).join(""),
-  negative: formula => setTerm(formula, 0),
-  product: ({ parts }) => parts.map((factor, i) => (i > 0 ? timesBefore(factor) : "") + setFactor(parts, i)).join(""),
-  fraction: ({ parts: [above, below] }) => `<mfrac><mrow>${set(above)}</mrow><mrow>${set(below)}</mrow></mfrac>`,
-  power: setPower,
-};
+  text() {
+    let text = "";
+    for (this.take("{"); !this.take("}"); ) text += this.tokens.pop().replace("\\_", "_");
+    return text;
+  }
 
-// Returns the content of a <math> element.
-const set = formula => (standsBare(formula) ? setBare(formula) : SETTERS[formula.kind](formula));
+  dotted(dots) {
+    const inside = this.group();
+    return letters(`<mover accent="true">${inside.html}<mo>${dots}</mo></mover>`, inside.width);
+  }
 
-const isNarrow = formula => formula.width <= (isChoice(formula) ? NARROW_CASES : NARROW);
+  fence(open) {
+    const inside = this.row();
+    this.tokens.pop();
+    return fenced(inside, open !== "(");
+  }
 
-function setTermInPieces(term, i) {
-  const [sign, inside] = signed(term, i === 0);
-  return (i > 0 ? BREAK : "") + sign + fenced(inside, standsAsFactor, setInPieces);
-}
+  bars() {
+    const inside = this.row();
+    this.tokens.pop();
+    return part(`<mrow><mo>|</mo>${inside.html}<mo>|</mo></mrow>`, inside.width + 2, callOf("abs", inside));
+  }
 
-function setProductInPieces({ parts }) {
-  let width = 0; // of the present <math> element
-  const pieces = parts.map((factor, i) => {
-    const breaks = i > 0 && width + factor.width > NARROW;
-    width = (breaks ? 0 : width) + factor.width;
-    const set = isNarrow(factor) ? setFactor(parts, i) : fenced(factor, standsAsFactor, setInPieces);
-    return (i > 0 ? timesBefore(factor) : "") + (breaks ? BREAK : "") + set;
-  });
-  return pieces.join("");
-}
+  root() {
+    const inside = this.group();
+    return part(`<msqrt>${inside.html}</msqrt>`, inside.width + 2, callOf("sqrt", inside));
+  }
 
-// Typesets a wide numerator after the fraction, and a wide denominator after a slash.
-function setFractionInPieces({ parts: [above, below] }) {
-  const wide = fenced(above, standsAsFactor, setInPieces);
-  if (below.width > NARROW) return `${wide}${BREAK}<mo form="infix">/</mo>${fenced(below, standsAsBase, setInPieces)}`;
-  return `<mfrac><mn>1</mn><mrow>${set(below)}</mrow></mfrac>${timesBefore(above)}${below.kind === "number" ? "" : BREAK}${wide}`;
-}
-
-const setCallInPieces = (word, { parts, isTall }) => setFunction(word) + inParentheses(parts.map(setInPieces).join(`<mo>,</mo>${BREAK}`), isTall);
-
-function setPowerInPieces(formula) {
-  const [base, exponent] = formula.parts;
-  if (exponent.width > NARROW / 2) return setCallInPieces("pow", formula);
-  const end = `<msup>${parenthesis(")", base.isTall)}<mrow>${set(exponent)}</mrow></msup>`;
-  return parenthesis("(", base.isTall) + setInPieces(base) + end;
-}
-
-const PIECE_SETTERS = {
-  ...SETTERS,
-  name: ({ word }) => word.match(new RegExp(`.{1,${NARROW}}`, "g")).map(part => `<mi>${part}</mi>`).join(BREAK),
-  call: formula => setCallInPieces(formula.word, formula),
-  condition: ({ parts }) => parts.map(setInPieces).join("<mo>&gt;</mo>"),
-  sum: ({ parts }) => parts.map(setTermInPieces).join(""),
-  negative: formula => setTermInPieces(formula, 0),
-  product: setProductInPieces,
-  fraction: setFractionInPieces,
-  power: setPowerInPieces,
-};
-
-const setInPieces = formula => (isNarrow(formula) ? set(formula) : PIECE_SETTERS[formula.kind](formula));
-
-// Returns an equation, or an expression, as MathML between whose elements lines may break; null if it is too long or has another form.
-function mathmlOf(text) {
-  if (text.length > LONGEST) return null;
-  try {
-    return MATH + parsed(text).map(setInPieces).join(`${BREAK}<mo form="infix">=</mo>`) + "</math>";
-  } catch (error) {
-    if (error instanceof SyntaxError) return null;
-    throw error;
+  cases() {
+    const rows = [];
+    this.text();
+    do {
+      const value = this.row();
+      this.tokens.pop();
+      this.tokens.pop();
+      rows.push([value, this.text() === "if" ? this.row() : null]);
+    } while (this.take("\\\\"));
+    this.tokens.pop();
+    this.text();
+    return casesOf(rows);
   }
 }
+
+// Returns MathML between whose elements lines may break.
+const mathmlOf = latex => MATH + new Reader(latex).row().pieces + "</math>";

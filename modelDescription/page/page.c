@@ -4,10 +4,11 @@
 
 #include "algebra/formula.h"
 #include "base/memory.h"
+#include "latex.h"
 #include "xml_output.h"
 
-/* Characters above which an equation of a derivation is left out. */
-enum { STEP_LENGTH_LIMIT = 600 };
+/* Characters above which an equation of a derivation is left out, and above which an equation is not typeset. */
+enum { STEP_LENGTH_LIMIT = 600, TYPESET_LIMIT = 3000 };
 
 void page_element(const struct Page *page, const char *name, const char *text) {
   xmlTextWriterWriteElement(page->writer, BAD_CAST name, BAD_CAST text);
@@ -38,17 +39,20 @@ static char *right_side(const struct Page *page, const char *left, Node right) {
   return display_text(page->display, right);
 }
 
-/* Writes an equation as text, which the page's script typesets. */
+/* Writes an equation as text, with the LaTeX from which the page's script typesets it. */
 static void write_text(const struct Page *page, const char *class, const char *left, const char *right) {
   xmlTextWriterStartElement(page->writer, BAD_CAST "code");
   if (class != NULL) write_attribute(page->writer, "class", class);
+  if (strlen(left) + strlen(right) <= TYPESET_LIMIT)
+    write_attribute(page->writer, "data-latex", latex_of_equation(page->model, left, right));
   xmlTextWriterWriteFormatString(page->writer, "%s = %s", left, right);
   xmlTextWriterEndElement(page->writer);
 }
 
 static void write_equation(const struct Page *page, const char *label, const char *left, const char *right) {
   if (page->lines != NULL) {
-    fprintf(page->lines, "equation\t%s\t%s\t%s\n", label != NULL ? label : "", left, right);
+    fprintf(page->lines, "equation\t%s\t%s\t%s\t%s\n", label != NULL ? label : "", left, right,
+            latex_of_equation(page->model, left, right));
     return;
   }
   xmlTextWriterStartElement(page->writer, BAD_CAST "div");
@@ -83,7 +87,9 @@ void page_step(const struct Page *page, const char *heading) {
 
 void page_step_texts(const struct Page *page, const char *left, const char *right) {
   bool is_short = strlen(left) + strlen(right) <= STEP_LENGTH_LIMIT;
-  if (page->lines != NULL) fprintf(page->lines, "line\t%s\t%s\n", left, is_short ? right : "...");
+  if (page->lines != NULL)
+    fprintf(page->lines, "line\t%s\t%s\t%s\n", left, is_short ? right : "...",
+            is_short ? latex_of_equation(page->model, left, right) : "");
   else if (is_short) write_text(page, "step", left, right);
   else page_element(page, "p", format_text("%s is too long to be shown.", left));
 }

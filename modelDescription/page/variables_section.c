@@ -5,6 +5,7 @@
 
 #include "algebra/formula.h"
 #include "base/memory.h"
+#include "latex.h"
 #include "xml_output.h"
 
 static void write_row(const struct Page *page, const struct InterfaceVariable *variable) {
@@ -21,7 +22,9 @@ static void write_row(const struct Page *page, const struct InterfaceVariable *v
                      : entry->is_output && entry->kind == VARIABLE_RESULT ? "output"
                                                                           : kinds[entry->kind];
   xmlTextWriterStartElement(page->writer, BAD_CAST "tr");
-  page_element(page, "td", ""); /* for the name as formulas show it, which the script adds */
+  xmlTextWriterStartElement(page->writer, BAD_CAST "td"); /* for the name as formulas show it, which the script adds */
+  write_attribute(page->writer, "data-latex", latex_of(page->model, entry->name));
+  xmlTextWriterEndElement(page->writer);
   page_element(page, "th", entry->name);
   page_element(page, "td", kind);
   page_element(page, "td", variable->unit != NULL ? variable->unit : "");

@@ -55,7 +55,7 @@ def test_every_term_arrives(tmp_path):
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     page = html.unescape((tmp_path / "out" / "documentation" / "index.html").read_text())
-    ((left, right),) = re.findall(r"<code>([^<=]*der\(v\)[^<=]*) = ([^<]*)</code>", page)
+    ((left, right),) = re.findall(r'<code data-latex="[^"]*">([^<=]*der\(v\)[^<=]*) = ([^<]*)</code>', page)
     plain = lambda text: re.sub(r"(\w)\[(\d)\]", r"\1_\2", text).replace("der(v)", "acc").replace("^", "**")
     s = {name: sp.Symbol(name) for name in [*plain(NAMES).split(), *"x v u time acc".split()]}
     ours = sp.sympify(plain(left), locals=s) - sp.sympify(plain(right), locals=s)
@@ -86,7 +86,7 @@ def test_the_page_keeps_the_names_of_definitions(tmp_path):
     )
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
-    lines = re.findall(r"<code>([^<]*)</code>", html.unescape((tmp_path / "out" / "documentation" / "index.html").read_text()))
+    lines = re.findall(r'<code data-latex="[^"]*">([^<]*)</code>', html.unescape((tmp_path / "out" / "documentation" / "index.html").read_text()))
     for line in ("way = sqrt(x^2 + l^2)", "stretch = way - l", "angle = x/l + 1", "K = v^2/2", "pull = 3*k*stretch"):
         assert line in lines
     assert not any(line.startswith(("half =", "place =")) for line in lines)
@@ -108,7 +108,7 @@ def test_the_page_of_a_large_system(tmp_path):
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     page = (tmp_path / "out" / "documentation" / "index.html").read_text()
-    assert "<code>der(v[100]) = sin(x[100])</code>" in page and "<code>y[100] = 2*x[100]</code>" in page
+    assert ">der(v[100]) = sin(x[100])</code>" in page and ">y[100] = 2*x[100]</code>" in page
     assert "der(v[101]) =" not in page and "y[101] =" not in page
     assert "200 further equations are not shown" in page and "200 further outputs are not shown" in page
     # 300 coordinates and velocities, their derivatives, 300 outputs, 3 energies and 2 statistics make 1505 rows.
@@ -154,7 +154,7 @@ def equations(lines, folder):
     result = lagc("system.xml", "-o", "out", cwd=folder)
     assert (result.returncode, result.stderr) == (0, "")
     page = html.unescape((folder / "out" / "documentation" / "index.html").read_text())
-    ((left, right),) = re.findall(r"<code>([^<=]*der\(v\)[^<=]*) = ([^<]*)</code>", page)
+    ((left, right),) = re.findall(r'<code data-latex="[^"]*">([^<=]*der\(v\)[^<=]*) = ([^<]*)</code>', page)
     return sp.sympify(f"{left} - ({right})".replace("der(v)", "acc").replace("^", "**"))
 
 

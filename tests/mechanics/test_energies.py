@@ -31,7 +31,7 @@ def page(elements, folder):
 
 def formula(text, left):
     """The right side of `left = ...` on the documentation page."""
-    (right,) = re.findall(rf"<code>{left} = ([^<]*)</code>", text)
+    (right,) = re.findall(rf"<code.*?>{left} = ([^<]*)</code>", text)
     return sp.sympify(right.replace("^", "**"), locals=NAMES)
 
 

@@ -137,9 +137,9 @@ def test_page_shows_the_force(tmp_path):
     (tmp_path / "system.xml").write_text(BEARING)
     assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
     (page,) = shown([tmp_path / "out" / "documentation" / "index.html"], tmp_path)
-    assert check(page) == page.count("<code>")
+    assert check(page) == page.count("<code data-latex")
     section = page[page.index("Forces of reaction") :]
-    assert "<code>stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")
+    assert ">stretch.force = " in section and section.index("<math") < section.index("stretch.force = ")
 
 
 # The unit of a force times that of its velocity is a unit of power: N, N.m and V are units of forces.

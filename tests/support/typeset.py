@@ -39,7 +39,7 @@ def infix(element):
         return f"abs({''.join(parts[1:-1])})"
     if tag == "mrow" and parts[1:2] == ["apply"]:  # sin x, sin² x, sin²(x - y)
         power, content = re.fullmatch(r"\(\((\w+)\)\*\*\((\d+)\)\)", parts[0]), "".join(parts[2:])
-        argument = content if parts[2] == "(" else f"({content})"
+        argument = content if content.startswith("(") else f"({content})"
         return f"({power[1]}{argument}**{power[2]})" if power else parts[0] + argument
     parts = [part for part in parts if part not in ("apply", "{")]
     return {"⋅": "*", "\u2062": "*", "−": "-", "\u2061": "apply"}.get(element.text, GREEK.get(element.text, element.text or "")) + "".join(parts)

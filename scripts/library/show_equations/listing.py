@@ -16,6 +16,7 @@ class Equation(NamedTuple):
     label: str  # the coordinate or the constraint; "" for values
     left: str
     right: str
+    latex: str  # of both sides; "" if they are too long
 
 
 class Text(NamedTuple):
