@@ -306,11 +306,15 @@ def main(words=None):
     """Write the report; return 1 if an FMU gives a wrong result. Missing programs and references are named in the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="compare five systems at few tolerances, in two minutes")
-    quick = parser.parse_args(words).quick
+    parser.add_argument("--only", nargs="+", metavar="SECTION", choices=[title for title, _ in SECTIONS], help="write these sections: " + ", ".join(title for title, _ in SECTIONS))
+    arguments = parser.parse_args(words)
+    quick = arguments.quick
     FOLDER.mkdir(parents=True, exist_ok=True)
     count = len(work_precision.plan(quick)) + len(stiff.plan(quick)) + len(mechanisms.chosen(quick)) + 2 + len(switching.PROBLEMS) + len(switching.GROWING)
     progress, sections = Progress(count + len(validation.cases(quick)) + len(stepped(quick)) + 3 + len(CASES) + len(energy.RUNS) * len(energy.METHODS)), {}
     for title, section in SECTIONS:
+        if arguments.only and title not in arguments.only:
+            continue
         sections[title] = attempt(title, section, quick, progress)
         write_page(sections)
         for line in sections[title].summary:

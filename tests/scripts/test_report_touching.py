@@ -46,11 +46,11 @@ def test_sliding_and_rolling():
 
 
 def test_the_table():
-    samples = [Sample("box", "MuJoCo", 1e-2, 9e-3, [1e-3, 2e-3]), Sample("box", "MuJoCo", 1e-3, 9e-4, [1e-2]), Sample("quadruped", "Drake", 1e-2, 1e-9, [0.2])]
+    samples = [Sample("box", "MuJoCo", 1e-2, 9e-3, [1e-3, 2e-3]), Sample("box", "MuJoCo", 1e-3, 9e-4, [1e-2]), Sample("quadruped", "Drake, discrete", 1e-2, 1e-9, [0.2])]
     rows = {(row[0], row[2]): dict(zip(comparison.METHODS, row[3:])) for row in comparison.rows(samples)}
     box = [rows["box that slides to rest", level]["MuJoCo"] for level in comparison.LEVELS]
     assert box[0] == pytest.approx(1.0) and 1 < box[1] <= 10 and box[2:] == ["never", "never"]
-    assert rows["box that slides to rest", 1e-2]["Drake"] == "" and rows["quadruped that stands for 10 s", 1e-8]["Drake"] == pytest.approx(200)
+    assert rows["box that slides to rest", 1e-2]["Drake, discrete"] == "" and rows["quadruped that stands for 10 s", 1e-8]["Drake, discrete"] == pytest.approx(200)
 
 
 @pytest.mark.parametrize("name", sorted(path.name for path in SYSTEMS.iterdir()))

@@ -14,7 +14,9 @@ STEPS = [1e-2, 2e-3, 1e-3, 2e-4, 1e-4]  # s, of MuJoCo and Drake
 TOLERANCES = [1e-6, 1e-8, 1e-10]  # tolerances of the FMU with rigid contacts
 # Settings of compliant contacts: the approximate penetration in m, and a thousandth of the creep velocity in m/s.
 SOFTNESS = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8]
-METHODS = ["FMU, rigid", "FMU, compliant", "MuJoCo", "Drake"]
+# Settings of Drake's continuous plant: the penetration in m and the creep in m/s, and up to 1e-3 the accuracy of its integrator.
+ALLOWANCES = [1e-2, 1e-3, 1e-4, 1e-5]
+METHODS = ["FMU, rigid", "FMU, compliant", "MuJoCo", "Drake, discrete", "Drake, continuous"]
 HEADER = ["problem", "error", "to", *(f"{method} [ms]" for method in METHODS)]
 LEVELS, WEIGHT_LEVELS = [1e-2, 1e-3, 1e-4, 1e-6], [1e-6, 1e-8]
 
@@ -23,8 +25,9 @@ NOTES = [
     "counts, by the processor's time. The FMU does one communication step in a C program; MuJoCo and Drake advance in one call.",
     "Rigid: <contact> and <friction>, of which each event is located. Compliant: shapes with a stiffness and a creep, stiffer with less creep where the error is to be smaller. The quadruped stands on compliant contacts in all, "
     "read from one URDF.",
-    "MuJoCo 4 has elliptic cones, contacts as stiff as its step allows, and a restitution by a spring with a damper. Drake has its discrete plant, with spheres that touch at points, and a box by hydroelastic contact; "
-    "it has no restitution.",
+    "MuJoCo 4 has elliptic cones, contacts as stiff as its step allows, and a restitution by a spring with a damper. Drake's discrete plant has spheres that touch at points, and a box by hydroelastic contact. "
+    "Its continuous plant has contact at points, at the corners of the box, by the integrator radau3 with error control. Neither has restitution.",
+    "Never: with no setting of these methods. Steps are 1e-2 to 1e-4 s; allowances of the continuous plant, a penetration in m and a creep in m/s, 1e-2 to 1e-5. Compliant contacts keep an error of their own, which falls with the setting alone.",
 ]  # fmt: skip
 
 
@@ -57,10 +60,12 @@ def ways():
             yield from ((problem.name, METHODS[1], softness, partial(Fmu, problem, softness, True)) for softness in SOFTNESS)
         yield from ((problem.name, METHODS[2], step, partial(MuJoCo, problem, step)) for step in STEPS)
         if not problem.restitution:
-            yield from ((problem.name, METHODS[3], step, partial(Drake, problem, step)) for step in STEPS)
+            yield from ((problem.name, METHODS[3], step, partial(Drake, problem, step, False)) for step in STEPS)
+            yield from ((problem.name, METHODS[4], allowance, partial(Drake, problem, allowance, True)) for allowance in ALLOWANCES)
     yield from (("quadruped", METHODS[1], tolerance, partial(FmuQuadruped, tolerance)) for tolerance in TOLERANCES)
     yield from (("quadruped", METHODS[2], step, partial(MuJoCoQuadruped, step)) for step in STEPS[:4])
-    yield from (("quadruped", METHODS[3], step, partial(DrakeQuadruped, step)) for step in STEPS[:3])
+    yield from (("quadruped", METHODS[3], step, partial(DrakeQuadruped, step, False)) for step in STEPS[:3])
+    yield from (("quadruped", METHODS[4], allowance, partial(DrakeQuadruped, allowance, True)) for allowance in ALLOWANCES[:3])
 
 
 def collect(quick, progress):

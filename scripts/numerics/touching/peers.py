@@ -1,5 +1,6 @@
 """Simulate bodies in contact by each program; models are built before the clock starts, and processor time counts."""
 
+import itertools
 import logging
 import time
 
@@ -10,6 +11,7 @@ from numerics.switching.peers import contact_rate, damping_ratio
 from numerics.touching.problems import DAMPING, GRAVITY, GROUND_FRICTION, HEIGHT, QUADRUPED, SERVOS, STANDS, STIFFNESS, WEIGHT
 
 CPU = time.process_time
+CORNER = 1e-4  # m, radius of a box's corners in Drake's continuous plant
 
 
 class Fmu:
@@ -115,34 +117,40 @@ class MuJoCoQuadruped:
 
 class DrakePlant:
     """
-    A discrete MultibodyPlant of Drake on a plane.
+    A MultibodyPlant of Drake on a plane: discrete with steps of a length in s, or continuous with a penetration in m and a creep in m/s.
 
-    Spheres have point contact, stiffer with shorter steps. A box has hydroelastic contact, since point contact would act at one corner only.
+    Spheres have point contact, stiffer with smaller settings. A box has hydroelastic contact in the discrete plant, since point contact would act
+    at one corner only. In the continuous plant, a point at each corner has contact.
     """
 
-    def __init__(self, length, friction, gravity):
+    def __init__(self, setting, is_continuous, friction, gravity):
         from pydrake.math import RigidTransform
         from pydrake.multibody.plant import AddMultibodyPlantSceneGraph, CoulombFriction
         from pydrake.geometry import AddContactMaterial, AddRigidHydroelasticProperties, HalfSpace, ProximityProperties
         from pydrake.systems.framework import DiagramBuilder
 
-        self.builder = DiagramBuilder()
-        self.plant, _ = AddMultibodyPlantSceneGraph(self.builder, time_step=length)
+        self.builder, self.setting, self.is_continuous = DiagramBuilder(), setting, is_continuous
+        self.plant, _ = AddMultibodyPlantSceneGraph(self.builder, time_step=0.0 if is_continuous else setting)
         logging.getLogger("drake").setLevel(logging.ERROR)  # suppresses the warning that half spaces do not touch deformable bodies
         self.friction = CoulombFriction(friction, friction)
         properties = ProximityProperties()
         AddContactMaterial(friction=self.friction, properties=properties)
-        AddRigidHydroelasticProperties(properties)
+        if not is_continuous:
+            AddRigidHydroelasticProperties(properties)
         self.plant.RegisterCollisionGeometry(self.plant.world_body(), RigidTransform(), HalfSpace(), "ground", properties)
         self.plant.mutable_gravity_field().set_gravity_vector(gravity)
 
-    def finish(self, length):
-        from pydrake.systems.analysis import Simulator
+    def finish(self):
+        from pydrake.systems.analysis import ApplySimulatorConfig, Simulator, SimulatorConfig
 
         self.plant.Finalize()
-        self.plant.set_penetration_allowance(length**1.5)
+        self.plant.set_penetration_allowance(self.setting if self.is_continuous else self.setting**1.5)
+        if self.is_continuous:
+            self.plant.set_stiction_tolerance(self.setting)
         self.diagram = self.builder.Build()
         self.simulator = Simulator(self.diagram)
+        if self.is_continuous:
+            ApplySimulatorConfig(SimulatorConfig(integration_scheme="radau3", accuracy=min(self.setting, 1e-3)), self.simulator)
         self.context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
 
     def advance(self, end):
@@ -155,8 +163,8 @@ class DrakePlant:
 class Drake:
     """A problem in Drake; each run builds the plant again."""
 
-    def __init__(self, problem, length):
-        self.problem, self.length = problem, length
+    def __init__(self, problem, setting, is_continuous):
+        self.problem, self.setting, self.is_continuous = problem, setting, is_continuous
         self.build()
 
     def build(self):
@@ -165,7 +173,7 @@ class Drake:
         from pydrake.multibody.tree import SpatialInertia
 
         problem, body = self.problem, self.problem.body
-        self.world = world = DrakePlant(self.length, problem.friction, problem.gravity)
+        self.world = world = DrakePlant(self.setting, self.is_continuous, problem.friction, problem.gravity)
         if "radius" in body:
             inertia, shape = SpatialInertia.SolidSphereWithMass(body["mass"], body["radius"]), Sphere(body["radius"])
         else:
@@ -173,10 +181,14 @@ class Drake:
         self.body = world.plant.AddRigidBody("body", inertia)
         properties = ProximityProperties()
         AddContactMaterial(friction=world.friction, properties=properties)
-        if "radius" not in body:
-            AddCompliantHydroelasticProperties(min(body["sizes"]), 1e4 / self.length, properties)
-        world.plant.RegisterCollisionGeometry(self.body, RigidTransform(), shape, "body", properties)
-        world.finish(self.length)
+        places = {(0, 0, 0): shape}
+        if "radius" not in body and self.is_continuous:
+            places = {corner: Sphere(CORNER) for corner in itertools.product(*((-size / 2 + CORNER, size / 2 - CORNER) for size in body["sizes"]))}
+        elif "radius" not in body:
+            AddCompliantHydroelasticProperties(min(body["sizes"]), 1e4 / self.setting, properties)
+        for place, touching in places.items():
+            world.plant.RegisterCollisionGeometry(self.body, RigidTransform(place), touching, f"body {place}", properties)
+        world.finish()
 
     def run(self):
         from pydrake.math import RigidTransform
@@ -196,15 +208,15 @@ class Drake:
 class DrakeQuadruped:
     """The quadruped in Drake."""
 
-    def __init__(self, length):
-        self.length = length
+    def __init__(self, setting, is_continuous):
+        self.words = setting, is_continuous
 
     def run(self):
         from pydrake.math import RigidTransform
         from pydrake.multibody.parsing import Parser
         from pydrake.multibody.tree import RevoluteSpring
 
-        world = DrakePlant(self.length, GROUND_FRICTION, (0, 0, -GRAVITY))
+        world = DrakePlant(*self.words, GROUND_FRICTION, (0, 0, -GRAVITY))
         plant = world.plant
         Parser(plant).AddModels(str(QUADRUPED))
         for name, angle in SERVOS.items():
@@ -212,7 +224,7 @@ class DrakeQuadruped:
             joint.set_default_angle(angle)
             joint.set_default_damping(DAMPING)
             plant.AddForceElement(RevoluteSpring(joint, angle, STIFFNESS))
-        world.finish(self.length)
+        world.finish()
         plant.SetFreeBodyPose(world.context, plant.GetBodyByName("trunk"), RigidTransform([0, 0, HEIGHT]))
         seconds = world.advance(STANDS)
         results = plant.get_contact_results_output_port().Eval(world.context)
