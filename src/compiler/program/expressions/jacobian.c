@@ -6,8 +6,9 @@
  * One reverse sweep for each row of R gives its gradient, so that only nonzero elements are formed. The columns are
  * then solved symbolically in small blocks, and by the factors of M at run time in others. For kinematic trees,
  * directional derivatives along each state (forward mode) are cheaper. Only the pattern is found here, from the
- * states that each block depends on. The number of elements is bounded by JACOBIAN_LIMIT. A. Griewank, A. Walther:
- * Evaluating Derivatives, 2nd ed., 2008, chapters 3 and 7.
+ * states that each block depends on. The same holds for long equations, such as those of a robot on the ground with
+ * hundreds of contact points. The number of elements is bounded by JACOBIAN_LIMIT. A. Griewank, A. Walther: Evaluating
+ * Derivatives, 2nd ed., 2008, chapters 3 and 7.
  */
 #include "program/expressions/jacobian.h"
 
@@ -18,6 +19,9 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "program/expressions/lu_pattern.h"
+
+/* Most nodes below the equations, counted once for each, for formulas: their C has some 30 bytes a node. */
+enum { GRADIENT_LIMIT = 100000 };
 
 /* The kinds of symbols of the state, as bits. */
 enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE };
@@ -161,7 +165,7 @@ static void append_rates(struct JacobianElements *list, struct Graph *graph, con
 
 /*
  * Returns only the pattern, for a Jacobian by directional derivatives. They serve kinematic trees, where they cost
- * less than formulas for each element, and rates that depend on values found at run time.
+ * less than formulas for each element, long equations, and rates that depend on values found at run time.
  */
 static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, const struct Equations *equations) {
   struct JacobianElements list = {0};
@@ -176,9 +180,22 @@ static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, c
   return jacobian;
 }
 
+/* True if gradients of all equations would be too long; a gradient is about as long as its equation. */
+static bool are_long(struct Graph *graph, const struct Equations *equations) {
+  size_t sum = 0;
+  for (size_t i = 0; i < row_count(equations) && sum <= GRADIENT_LIMIT; i++) {
+    cone_collect(graph->cone, graph, &equations->residual[i], 1);
+    sum += graph->cone->count;
+  }
+  return sum > GRADIENT_LIMIT;
+}
+
+static bool needs_directions(struct Graph *graph, const struct Equations *equations) {
+  return inertia_has_trees(equations->inertia) || rates_use_unknowns(graph, equations) || are_long(graph, equations);
+}
+
 struct JacobianExpressions *jacobian_create(struct Graph *graph, const struct Equations *equations) {
-  if (!equations->explicit_form && (inertia_has_trees(equations->inertia) || rates_use_unknowns(graph, equations)))
-    return pattern_for_directions(graph, equations);
+  if (!equations->explicit_form && needs_directions(graph, equations)) return pattern_for_directions(graph, equations);
   struct JacobianElements list = {0};
   size_t n = equations->count;
   for (size_t i = 0; i < n; i++) append(&list, i, n + i, ONE);
