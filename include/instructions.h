@@ -6,6 +6,9 @@
  * for CALL and CALL_OF_TWO the index of the function follows. Then come the operands of each instruction, the result
  * first. The opcode END ends the table. An operand is an index in its space; in rows of series it counts coefficients.
  *
+ * SPACED, in the number of instructions, marks a run whose instructions have equally spaced operands. Each operand is an
+ * index and the difference to that of the next instruction.
+ *
  * SKIP has the number of words of its region in place of that of instructions. Then come its operand and the region,
  * which is a sequence of runs.
  */
@@ -56,6 +59,9 @@ typedef uint32_t Slot;
  * bits.
  */
 enum { SLOT_BITS = 27, SPACE_BITS = 5 };
+
+/* In the number of instructions of a run, see above. */
+#define SPACED 0x80000000u
 
 /*
  * r is the result, a, b and c are the operands. Values are numbers. In instructions for series, k is the order, a_k a

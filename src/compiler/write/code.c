@@ -214,6 +214,19 @@ static bool is_in_statements(const struct Program *program, enum FunctionName na
          (name == FUNCTION_DIRECTIONAL && !program->directional_is_table);
 }
 
+/* Two functions that begin with the same instructions, and share them if they are tables. */
+static const enum FunctionName pairs[][2] = {{FUNCTION_DERIVATIVES, FUNCTION_ACCELERATIONS},
+                                             {FUNCTION_DIRECTIONAL, FUNCTION_ACCELERATIONS_ALONG}};
+
+/* Returns the functions of a pair in tables that have one with this name; NULL if there is none. */
+static const enum FunctionName *pair_of(const struct Program *program, enum FunctionName name) {
+  for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+    if ((name == pairs[i][0] || name == pairs[i][1]) && program->ir_functions[pairs[i][0]] != NULL &&
+        !is_in_statements(program, pairs[i][0]))
+      return pairs[i];
+  return NULL;
+}
+
 /*
  * Writes the functions of struct Lagrangian that have one instruction list. Returns the workspace that functions in
  * parts need.
@@ -222,10 +235,12 @@ static size_t write_ir_functions(FILE *file, const struct Program *program, cons
   size_t shared = 0;
   for (enum FunctionName i = 0; i < LAGRANGIAN_IR_FUNCTIONS; i++) {
     const struct IrFunction *ir = program->ir_functions[i];
+    const enum FunctionName *pair = pair_of(program, i);
     if (ir == NULL) continue;
     if (tables == NULL) statements_function(file, program, i, "", ir);
     else if (is_in_statements(program, i)) shared = larger(shared, statements_in_parts(file, program, i));
-    else instruction_tables_function(file, tables, i, ir);
+    else if (pair != NULL && i == pair[0]) instruction_tables_pair(file, tables, pair[0], pair[1]);
+    else if (pair == NULL) instruction_tables_function(file, tables, i, ir);
   }
   return shared;
 }

@@ -69,11 +69,11 @@ static void set_base(FILE *file, const char *space, const char *source) {
   fprintf(file, "  frame.base[SPACE_%s] = %s;\n", space, source);
 }
 
-void instruction_tables_function(FILE *file, const struct Encoding *encoding, enum FunctionName name,
-                                 const struct IrFunction *ir) {
+/* Writes the head of a function and its frame. */
+static void begin_function(FILE *file, const struct Encoding *encoding, enum FunctionName name,
+                           const struct IrFunction *ir) {
   const struct Program *program = encoding->program;
   const struct GeneratedFunction *text = &generated_functions[name];
-  write_table(file, encoding, text->name, ir);
   write_head(file, name, "", ir->operation_count);
   if (!takes(name, "*point"))
     fprintf(file, "  const struct Point values = {.parameter = p%s};\n  const struct Point *point = &values;\n",
@@ -90,8 +90,43 @@ void instruction_tables_function(FILE *file, const struct Encoding *encoding, en
     set_base(file, "ROW", "*w");
     fprintf(file, "  frame.base[SPACE_MASS] = w[%zu];\n", program->series->mass_row);
   }
+}
+
+void instruction_tables_function(FILE *file, const struct Encoding *encoding, enum FunctionName name,
+                                 const struct IrFunction *ir) {
+  const struct GeneratedFunction *text = &generated_functions[name];
+  write_table(file, encoding, text->name, ir);
+  begin_function(file, encoding, name, ir);
   fprintf(file, "  %sinstructions_run(&frame, %s_code);\n}\n\n", text->returned == RETURNS_STATUS ? "return " : "",
           text->name);
+}
+
+/* Returns the name of the table of a part of two functions. */
+static char *name_of_part(enum FunctionName first, enum FunctionName second, int part) {
+  static const char *const suffixes[PAIR_PARTS] = {"", "_along", "_end", "_end"};
+  return format_text("%s%s", generated_functions[part == PAIR_SECOND_END ? second : first].name, suffixes[part]);
+}
+
+void instruction_tables_pair(FILE *file, const struct Encoding *encoding, enum FunctionName first,
+                             enum FunctionName second) {
+  struct IrFunction *const *ir_functions = encoding->program->ir_functions;
+  struct WordList words[PAIR_PARTS] = {0};
+  encode_pair(encoding, ir_functions[first], ir_functions[second], words);
+  for (int part = 0; part < PAIR_PARTS; part++)
+    if (words[part].count > 0) write_words(file, name_of_part(first, second, part), &words[part]);
+  fputs("\n", file);
+  for (int i = 0; i < 2; i++) {
+    enum FunctionName name = i == 0 ? first : second;
+    const int parts[] = {PAIR_STEADY, PAIR_COMMON, i == 0 ? PAIR_END : PAIR_SECOND_END};
+    if (ir_functions[name] == NULL) continue;
+    begin_function(file, encoding, name, ir_functions[name]);
+    fputs("  int singular = 0;\n", file);
+    for (int j = 0; j < 3; j++)
+      if (words[parts[j]].count > 0)
+        fprintf(file, "  if (singular == 0%s) singular = instructions_run(&frame, %s_code);\n",
+                j == 0 && takes(name, "*seed") ? " && !seed->repeats" : "", name_of_part(first, second, parts[j]));
+    fputs("  return singular;\n}\n\n", file);
+  }
 }
 
 static void write_results(FILE *file, const struct Encoding *encoding, enum FunctionName name,

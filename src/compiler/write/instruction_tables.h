@@ -11,6 +11,10 @@ void instruction_tables_shared(FILE *file, const struct Encoding *encoding);
 void instruction_tables_function(FILE *file, const struct Encoding *encoding, enum FunctionName name,
                                  const struct IrFunction *ir);
 
+/* Writes two functions that begin with the same instructions; the second one may be missing. */
+void instruction_tables_pair(FILE *file, const struct Encoding *encoding, enum FunctionName first,
+                             enum FunctionName second);
+
 /* Writes result() and result_along(). */
 void instruction_tables_results(FILE *file, const struct Encoding *encoding);
 

@@ -68,16 +68,30 @@ enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
  * operands, in their spaces. In series they are coefficients k; ROW_R and the like are whole rows.
  */
 #define EACH(size, ...)                                                                                                \
-  for (; count > 0; count--, code += (size)) __VA_ARGS__;                                                              \
+  if (is_spaced) {                                                                                                     \
+    uint32_t index[] = {WORD(0, size, 0), WORD(1, size, 2), WORD(2, size, 4), WORD(3, size, 6)};                       \
+    const uint32_t next[] = {WORD(0, size, 1), WORD(1, size, 3), WORD(2, size, 5), WORD(3, size, 7)};                  \
+    for (; count > 0; count--) {                                                                                       \
+      __VA_ARGS__;                                                                                                     \
+      for (int j = 0; j < (size); j++) index[j] += next[j];                                                            \
+    }                                                                                                                  \
+    code += 2 * (size);                                                                                                \
+  } else {                                                                                                             \
+    for (; count > 0; count--, code += (size)) {                                                                       \
+      const uint32_t index[] = {WORD(0, size, 0), WORD(1, size, 1), WORD(2, size, 2), WORD(3, size, 3)};               \
+      __VA_ARGS__;                                                                                                     \
+    }                                                                                                                  \
+  }                                                                                                                    \
   break
-#define R r[code[0]]
-#define A a[code[1]]
-#define B b[code[2]]
-#define C c[code[3]]
-#define ROW_R (row_r + code[0])
-#define ROW_A (row_a + code[1])
-#define ROW_B (row_b + code[2])
-#define ROW_C (row_c + code[3])
+#define WORD(operand, size, number) ((operand) < (size) ? code[number] : 0)
+#define R r[index[0]]
+#define A a[index[1]]
+#define B b[index[2]]
+#define C c[index[3]]
+#define ROW_R (row_r + index[0])
+#define ROW_A (row_a + index[1])
+#define ROW_B (row_b + index[2])
+#define ROW_C (row_c + index[3])
 
 /* Returns the space of an operand, 0 for the result, in all instructions of a run. */
 static inline uint32_t space_of_operand(uint32_t spaces, int number) {
@@ -89,7 +103,8 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return 0;
-    uint32_t count = code[1], spaces = code[2];
+    const bool is_spaced = (code[1] & SPACED) != 0;
+    uint32_t count = code[1] & ~SPACED, spaces = code[2];
     Real *r = base[space_of_operand(spaces, 0)];
     const Real *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
     code += 3;
@@ -121,17 +136,17 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
       Real (*function)(Real, Real) = frame->tables->functions_of_two[*code++];
       EACH(3, R = function(A, B));
     }
-    case CHECK_POSITIVE: EACH(2, REQUIRE(A > 0.0, (int)code[0]));
-    case CHECK_PIVOT: EACH(3, REQUIRE(A > 1e-14 * B, (int)code[0]));
-    case CHECK_DIAGONAL: EACH(3, REQUIRE(A > 1e-28 * B, (int)code[0]));
+    case CHECK_POSITIVE: EACH(2, REQUIRE(A > 0.0, (int)index[0]));
+    case CHECK_PIVOT: EACH(3, REQUIRE(A > 1e-14 * B, (int)index[0]));
+    case CHECK_DIAGONAL: EACH(3, REQUIRE(A > 1e-28 * B, (int)index[0]));
     case FACTOR:
       for (; count > 0; count--) {
         int singular = factor(frame, *code++);
         if (singular != 0) return singular;
       }
       break;
-    case SOLVE: EACH(1, solve(frame, code[0]));
-    case LEAST_FORCES: EACH(1, take_least_forces(frame, code[0]));
+    case SOLVE: EACH(1, solve(frame, index[0]));
+    case LEAST_FORCES: EACH(1, take_least_forces(frame, index[0]));
     case SKIP: code += ANYWHERE(a[code[0]] > 0.0) ? 1 : 1 + count; break;
     default: return -1; /* lagc writes no other opcode */
     }
@@ -143,7 +158,8 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return;
-    uint32_t count = code[1], spaces = code[2];
+    const bool is_spaced = (code[1] & SPACED) != 0;
+    uint32_t count = code[1] & ~SPACED, spaces = code[2];
     const uint32_t space_r = space_of_operand(spaces, 0), space_a = space_of_operand(spaces, 1);
     const uint32_t space_b = space_of_operand(spaces, 2), space_c = space_of_operand(spaces, 3);
     Real *const row_r = base[space_r], *const r = row_r + (space_r >= SPACE_ROW ? k : 0);
@@ -177,7 +193,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_LARGER: EACH(4, R = WHERE(series_sign(k, ROW_A) > 0.0, B, C));
     case SERIES_SMALLER: EACH(4, R = WHERE(series_sign(k, ROW_A) < 0.0, B, C));
     case SERIES_REST: EACH(4, R = A - series_rest(k, ROW_B, ROW_C));
-    case SERIES_SOLVE: EACH(1, solve(frame, code[0]));
+    case SERIES_SOLVE: EACH(1, solve(frame, index[0]));
     case SERIES_STATE: EACH(2, (&R)[1] = A * reciprocal[k + 1]);
     case SERIES_SLOPE: EACH(2, R = (k + 1) * (&A)[1]);
     default: return; /* lagc writes no other opcode */

@@ -82,12 +82,13 @@ static void close_region(struct SeparatedFunction *separated, struct Region *reg
   region->ir = (struct IrFunction){0};
 }
 
-struct SeparatedFunction regions_separate(const struct IrFunction *ir) {
+/* Separates the regions of the instructions first .. end - 1. */
+static struct SeparatedFunction separate_part(const struct IrFunction *ir, const Slot *conditions, size_t first,
+                                              size_t end) {
   struct SeparatedFunction separated = {0};
   struct Region *open = NULL;
   size_t open_count = 0;
-  Slot *conditions = conditions_of(ir);
-  for (size_t i = 0; i < ir->count; i++) {
+  for (size_t i = first; i < end; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
     if (conditions[i] != always) {
       append(&open_region(&open, &open_count, conditions[i])->ir, *instruction);
@@ -97,6 +98,12 @@ struct SeparatedFunction regions_separate(const struct IrFunction *ir) {
       close_region(&separated, open_region(&open, &open_count, instruction->operands[0]));
     append(&separated.outer, *instruction);
   }
-  release(conditions);
+  for (size_t i = 0; i < open_count; i++) close_region(&separated, &open[i]); /* later parts have the guards */
   return separated;
+}
+
+void regions_separate(const struct IrFunction *ir, const size_t *ends, size_t count, struct SeparatedFunction *parts) {
+  Slot *conditions = conditions_of(ir);
+  for (size_t i = 0; i < count; i++) parts[i] = separate_part(ir, conditions, i > 0 ? ends[i - 1] : 0, ends[i]);
+  release(conditions);
 }

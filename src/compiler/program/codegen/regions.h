@@ -19,8 +19,8 @@ struct SeparatedFunction {
   size_t region_count;
 };
 
-/* Separates the regions of a function that is not a series. */
-struct SeparatedFunction regions_separate(const struct IrFunction *ir);
+/* Separates the regions of the consecutive parts of a function that is not a series; ends: of each part. */
+void regions_separate(const struct IrFunction *ir, const size_t *ends, size_t count, struct SeparatedFunction *parts);
 
 /* Returns the number of instructions in regions. */
 size_t regions_length(const struct IrFunction *ir);

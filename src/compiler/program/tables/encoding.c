@@ -2,6 +2,9 @@
  * Encodes functions as tables of 32-bit words for the interpreter in src/runtime/support/instructions.c. Instructions
  * with the same opcode, function and spaces form a run, whose header is decoded once; the interpreter loops over its
  * instructions. Compile time is then independent of the length of the code.
+ *
+ * Local variables are numbered in the order of the table. Instructions of one form, such as those of the points of a
+ * shape, then have equally spaced operands. A table has the first of them and the differences: a loop over points.
  */
 #include "program/tables/encoding.h"
 
@@ -86,59 +89,239 @@ static void append_word(struct WordList *words, uint32_t word) {
   APPEND(words->items, words->count, word);
 }
 
-/* Appends one run: instructions first .. end - 1 of the schedule. */
-static void append_run(struct WordList *words, const struct Encoding *encoding, const struct IrFunction *ir,
-                       const size_t *schedule, size_t first, size_t end) {
-  const struct Instruction *instructions = ir->instructions;
-  enum Opcode opcode = instructions[schedule[first]].opcode;
-  append_word(words, opcode);
-  append_word(words, (uint32_t)(end - first));
-  append_word(words, spaces_of(&instructions[schedule[first]]));
-  if (opcode == CALL || opcode == CALL_OF_TWO)
-    append_word(words, (uint32_t)encoding->function[instructions[schedule[first]].function] - 1);
-  for (size_t i = first; i < end; i++) {
-    const struct Instruction *instruction = &instructions[schedule[i]];
-    append_word(words, opcode_has_result(opcode) ? index_of(encoding, instruction->result) : instruction->result);
-    for (int j = 0; j < opcode_arity(opcode); j++) append_word(words, index_of(encoding, instruction->operands[j]));
+/* A function in the order of a table, with its regions. */
+struct OrderedFunction {
+  struct IrFunction outer;
+  struct OrderedFunction *regions; /* of SKIP, by its result */
+};
+
+/* Numbers local variables in the order of the table. */
+struct LocalNumbers {
+  size_t *number; /* 1 + the number of each; 0: none yet */
+  size_t count;
+};
+
+static Slot numbered(struct LocalNumbers *numbers, Slot slot) {
+  if (space_of(slot) != SPACE_LOCAL) return slot;
+  size_t *number = &numbers->number[index_in(slot)];
+  if (*number == 0) *number = ++numbers->count;
+  return slot_at(SPACE_LOCAL, *number - 1);
+}
+
+/* Numbers the local variables of an ordered function, and of its regions where they stand. */
+static void number_locals(struct OrderedFunction *function, struct LocalNumbers *numbers) {
+  for (size_t i = 0; i < function->outer.count; i++) {
+    struct Instruction *instruction = &function->outer.instructions[i];
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++)
+      instruction->operands[j] = numbered(numbers, instruction->operands[j]);
+    if (opcode_has_result(instruction->opcode)) instruction->result = numbered(numbers, instruction->result);
+    if (instruction->opcode == SKIP && function->regions != NULL)
+      number_locals(&function->regions[instruction->result], numbers);
   }
 }
 
-static void append_region(struct WordList *words, const struct Encoding *encoding, const struct Instruction *skip,
-                          const struct Region *region);
-
-/* Appends the runs of a function whose regions are separated. */
-static void append_runs(struct WordList *words, const struct Encoding *encoding,
-                        const struct SeparatedFunction *function) {
-  const struct IrFunction *ir = &function->outer;
-  size_t *schedule = schedule_create(function, &encoding->program->blocks);
-  for (size_t first = 0, end = 0; first < ir->count; first = end) {
-    const struct Instruction *instruction = &ir->instructions[schedule[first]];
-    end = first + 1;
-    while (end < ir->count && same_run(instruction, &ir->instructions[schedule[end]])) end++;
-    if (instruction->opcode == SKIP && function->regions != NULL) /* a region contains no others */
-      append_region(words, encoding, instruction, &function->regions[instruction->result]);
-    else append_run(words, encoding, ir, schedule, first, end);
-  }
+/* Returns the instructions outside of regions in their order, and those of the regions in theirs. */
+static struct OrderedFunction ordered(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks,
+                                      const struct Forms *forms) {
+  struct OrderedFunction result = {.outer = function->outer};
+  size_t *schedule = schedule_create(function, blocks, forms);
+  result.outer.instructions = allocate(function->outer.count, sizeof *result.outer.instructions);
+  for (size_t i = 0; i < function->outer.count; i++)
+    result.outer.instructions[i] = function->outer.instructions[schedule[i]];
   release(schedule);
+  if (function->region_count > 0) result.regions = allocate(function->region_count, sizeof *result.regions);
+  for (size_t i = 0; i < function->region_count; i++) /* a region contains no others */
+    result.regions[i] = ordered(&(struct SeparatedFunction){.outer = function->regions[i].ir}, blocks, forms);
+  return result;
+}
+
+/* Returns the word for the result, number 0, or for an operand of an instruction. */
+static uint32_t word_of(const struct Encoding *encoding, const struct Instruction *instruction, int number) {
+  if (number > 0) return index_of(encoding, instruction->operands[number - 1]);
+  return opcode_has_result(instruction->opcode) ? index_of(encoding, instruction->result) : instruction->result;
+}
+
+static void append_header(struct WordList *words, const struct Encoding *encoding,
+                          const struct Instruction *instruction, size_t count, bool is_spaced) {
+  enum Opcode opcode = instruction->opcode;
+  append_word(words, opcode);
+  append_word(words, (uint32_t)count | (is_spaced ? SPACED : 0));
+  append_word(words, spaces_of(instruction));
+  if (opcode == CALL || opcode == CALL_OF_TWO)
+    append_word(words, (uint32_t)encoding->function[instruction->function] - 1);
+}
+
+/* Returns the number of instructions from the first on, up to count, whose words are equally spaced. */
+static size_t spaced_count(const struct Encoding *encoding, const struct Instruction *instructions, size_t count) {
+  size_t length = count < 2 ? count : 2;
+  int arity = opcode_arity(instructions->opcode);
+  for (; length >= 2 && length < count; length++)
+    for (int j = 0; j <= arity; j++)
+      if (word_of(encoding, &instructions[length], j) - word_of(encoding, &instructions[length - 1], j) !=
+          word_of(encoding, &instructions[1], j) - word_of(encoding, &instructions[0], j))
+        return length;
+  return length;
+}
+
+/* Appends a run with all words of its instructions. */
+static void append_listed(struct WordList *words, const struct Encoding *encoding,
+                          const struct Instruction *instructions, size_t count) {
+  if (count == 0) return;
+  append_header(words, encoding, instructions, count, false);
+  for (size_t i = 0; i < count; i++)
+    for (int j = 0; j <= opcode_arity(instructions->opcode); j++)
+      append_word(words, word_of(encoding, &instructions[i], j));
+}
+
+/* Appends a run of equally spaced instructions: the words of the first, each with its difference to the next. */
+static void append_spaced(struct WordList *words, const struct Encoding *encoding,
+                          const struct Instruction *instructions, size_t count) {
+  append_header(words, encoding, instructions, count, true);
+  for (int j = 0; j <= opcode_arity(instructions->opcode); j++) {
+    uint32_t first = word_of(encoding, &instructions[0], j);
+    append_word(words, first);
+    append_word(words, word_of(encoding, &instructions[1], j) - first);
+  }
+}
+
+/* Appends the instructions of one run, as several where many are equally spaced. */
+static void append_run(struct WordList *words, const struct Encoding *encoding, const struct Instruction *instructions,
+                       size_t count) {
+  enum { FEWEST_SPACED = 6 }; /* a header and differences take as many words as some 4 instructions */
+  bool may_return = !opcode_has_result(instructions->opcode);
+  size_t listed = 0;
+  for (size_t i = 0, length; i < count && !may_return; i += length) {
+    length = spaced_count(encoding, instructions + i, count - i);
+    if (length < FEWEST_SPACED) {
+      length = 1;
+      continue;
+    }
+    append_listed(words, encoding, instructions + listed, i - listed);
+    append_spaced(words, encoding, instructions + i, length);
+    listed = i + length;
+  }
+  append_listed(words, encoding, instructions + listed, count - listed);
+}
+
+static void append_region(struct WordList *words, const struct Encoding *encoding, const struct Instruction *skip,
+                          const struct OrderedFunction *region);
+
+static void append_runs(struct WordList *words, const struct Encoding *encoding,
+                        const struct OrderedFunction *function) {
+  const struct Instruction *instructions = function->outer.instructions;
+  for (size_t first = 0, end = 0; first < function->outer.count; first = end) {
+    end = first + 1;
+    while (end < function->outer.count && same_run(&instructions[first], &instructions[end])) end++;
+    if (instructions[first].opcode == SKIP && function->regions != NULL)
+      append_region(words, encoding, &instructions[first], &function->regions[instructions[first].result]);
+    else append_run(words, encoding, instructions + first, end - first);
+  }
 }
 
 /* Appends SKIP, with the number of words of its region in place of that of instructions, and the region. */
 static void append_region(struct WordList *words, const struct Encoding *encoding, const struct Instruction *skip,
-                          const struct Region *region) {
+                          const struct OrderedFunction *region) {
   append_word(words, SKIP);
   size_t length = words->count;
   append_word(words, 0);
   append_word(words, spaces_of(skip));
-  append_word(words, index_of(encoding, region->condition));
+  append_word(words, index_of(encoding, skip->operands[0]));
   size_t first = words->count;
-  append_runs(words, encoding, &(struct SeparatedFunction){.outer = region->ir});
+  append_runs(words, encoding, region);
   words->items[length] = (uint32_t)(words->count - first);
 }
 
-void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words) {
-  struct SeparatedFunction separated = regions_separate(ir);
-  append_runs(words, encoding, &separated);
+/* Appends a part of a function as a table, whose local variables are numbered from numbers->count on. */
+static void append_table(struct WordList *words, const struct Encoding *encoding, const struct SeparatedFunction *part,
+                         const struct Forms *forms, struct LocalNumbers *numbers) {
+  struct OrderedFunction function = ordered(part, &encoding->program->blocks, forms);
+  number_locals(&function, numbers);
+  append_runs(words, encoding, &function);
   append_word(words, END);
+}
+
+void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words) {
+  struct SeparatedFunction separated;
+  regions_separate(ir, &ir->count, 1, &separated);
+  struct Forms forms = forms_create(ir);
+  struct LocalNumbers numbers = {.number = allocate(ir->local_count, sizeof *numbers.number)};
+  append_table(words, encoding, &separated, &forms, &numbers);
+  release(numbers.number);
+  forms_release(&forms);
+}
+
+static bool are_equal(const struct Instruction *first, const struct Instruction *second) {
+  bool equal =
+      first->opcode == second->opcode && first->function == second->function && first->result == second->result;
+  for (int i = 0; i < opcode_arity(first->opcode); i++) equal &= first->operands[i] == second->operands[i];
+  return equal;
+}
+
+/* Returns the number of instructions with which both functions begin. */
+static size_t common_count(const struct IrFunction *first, const struct IrFunction *second) {
+  size_t count = 0;
+  while (count < first->count && count < second->count &&
+         are_equal(&first->instructions[count], &second->instructions[count]))
+    count++;
+  return count;
+}
+
+static bool reads_seed(const struct Instruction *instruction) {
+  bool reads = false;
+  for (int i = 0; i < opcode_arity(instruction->opcode); i++) {
+    enum Space space = space_of(instruction->operands[i]);
+    reads |= space >= SPACE_SEED_PARAMETER && space <= SPACE_SEED_RESULT;
+  }
+  return reads;
+}
+
+/* Returns a slot of the second function, whose own local variables follow those of the first. */
+static Slot moved(Slot slot, const bool *is_common, size_t shift) {
+  bool is_own = space_of(slot) == SPACE_LOCAL && !is_common[index_in(slot)];
+  return is_own ? slot_at(SPACE_LOCAL, index_in(slot) + shift) : slot;
+}
+
+/* Appends to the first function the instructions of the second one from the first that differs on. */
+static struct IrFunction joined(const struct IrFunction *first, const struct IrFunction *second, size_t common) {
+  struct IrFunction all = *first;
+  all.instructions = allocate(first->count + second->count, sizeof *all.instructions);
+  for (size_t i = 0; i < first->count; i++) all.instructions[i] = first->instructions[i];
+  bool *is_common = allocate(second->local_count, sizeof *is_common);
+  for (size_t i = 0; i < common; i++) {
+    Slot result = first->instructions[i].result;
+    if (opcode_has_result(first->instructions[i].opcode) && space_of(result) == SPACE_LOCAL)
+      is_common[index_in(result)] = true;
+  }
+  all.local_count = first->local_count + second->local_count;
+  for (size_t i = common; i < second->count; i++) {
+    struct Instruction instruction = second->instructions[i];
+    for (int j = 0; j < opcode_arity(instruction.opcode); j++)
+      instruction.operands[j] = moved(instruction.operands[j], is_common, first->local_count);
+    if (opcode_has_result(instruction.opcode))
+      instruction.result = moved(instruction.result, is_common, first->local_count);
+    all.instructions[all.count++] = instruction;
+  }
+  release(is_common);
+  return all;
+}
+
+void encode_pair(const struct Encoding *encoding, const struct IrFunction *first, const struct IrFunction *second,
+                 struct WordList words[PAIR_PARTS]) {
+  size_t common = second != NULL ? common_count(first, second) : first->count, steady = 0;
+  while (steady < common && !reads_seed(&first->instructions[steady])) steady++;
+  struct IrFunction all = second != NULL ? joined(first, second, common) : *first;
+  const size_t ends[PAIR_PARTS] = {steady, common, first->count, all.count};
+  struct SeparatedFunction parts[PAIR_PARTS];
+  regions_separate(&all, ends, PAIR_PARTS, parts);
+  struct Forms forms = forms_create(&all);
+  struct LocalNumbers numbers = {.number = allocate(all.local_count, sizeof *numbers.number)};
+  for (int i = 0; i < PAIR_PARTS; i++) {
+    size_t common_locals = numbers.count;
+    if (ends[i] > (i > 0 ? ends[i - 1] : 0)) append_table(&words[i], encoding, &parts[i], &forms, &numbers);
+    if (i == PAIR_END) numbers.count = common_locals; /* only one of the ends is run */
+  }
+  release(numbers.number);
+  forms_release(&forms);
 }
 
 struct IrTables encode_all(const struct Encoding *encoding, struct IrFunction *const *ir_functions,

@@ -27,6 +27,16 @@ struct WordList {
 /* Appends the table of a function, terminated by END. */
 void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words);
 
+/*
+ * Parts of two functions that begin with the same instructions. Those before the first that reads the seed come first,
+ * then the others that are equal, then both ends.
+ */
+enum { PAIR_STEADY, PAIR_COMMON, PAIR_END, PAIR_SECOND_END, PAIR_PARTS };
+
+/* Fills the tables of the parts, each terminated by END; those without instructions stay empty. second may be NULL. */
+void encode_pair(const struct Encoding *encoding, const struct IrFunction *first, const struct IrFunction *second,
+                 struct WordList words[PAIR_PARTS]);
+
 /* Consecutive tables of several functions. */
 struct IrTables {
   struct WordList words;

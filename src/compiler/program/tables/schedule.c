@@ -1,8 +1,9 @@
 /*
  * Level scheduling. The level of an instruction is 1 + the highest level that it must follow. It follows the last
  * writes of its operands, and the last writes and reads of the slot that its result overwrites. Instructions of one
- * level are independent and are sorted by opcode, function and spaces into runs. One pass and one sort: O(n log n).
- * SKIP accesses all slots of its region.
+ * level are independent, but for chains of sums, and are sorted by opcode, function and spaces into runs. In a run those
+ * of one form follow each other, and chains stay in order. One pass and one sort: O(n log n). SKIP accesses all slots
+ * of its region.
  */
 #include "program/tables/schedule.h"
 
@@ -113,10 +114,11 @@ static bool may_return(enum Opcode opcode) {
   return opcode == FACTOR || opcode_metadata(opcode)->result == NUMBER;
 }
 
-/* An instruction with its level, and its number in the function, by which equal ones keep their order. */
+/* An instruction with its level, its form, and its number in the function, by which equal ones keep their order. */
 struct ScheduledInstruction {
   size_t level, number;
-  uint32_t spaces;
+  uint32_t spaces, form;
+  size_t chain; /* the number of the first instruction of a chain of sums; else its own */
   const struct Instruction *instruction;
 };
 
@@ -127,6 +129,8 @@ static int compare(const void *first, const void *second) {
   if (a->instruction->function != b->instruction->function)
     return a->instruction->function < b->instruction->function ? -1 : 1;
   if (a->spaces != b->spaces) return a->spaces < b->spaces ? -1 : 1;
+  if (a->form != b->form) return a->form < b->form ? -1 : 1;
+  if (a->chain != b->chain) return a->chain < b->chain ? -1 : 1;
   return (a->number > b->number) - (a->number < b->number);
 }
 
@@ -137,23 +141,108 @@ uint32_t spaces_of(const struct Instruction *instruction) {
   return spaces;
 }
 
-size_t *schedule_create(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks) {
+/* True if the instruction adds to a sum, its first operand. */
+static bool adds_to_sum(const struct Instruction *instruction) {
+  enum Opcode opcode = instruction->opcode;
+  bool adds = opcode == SUM || opcode == DIFFERENCE || opcode == SERIES_SUM || opcode == SERIES_DIFFERENCE;
+  return adds && space_of(instruction->operands[0]) == SPACE_LOCAL && space_of(instruction->result) == SPACE_LOCAL;
+}
+
+/* Sums of a function that are computed as chains in one run. */
+struct Chains {
+  size_t *before; /* of each instruction: 1 + that which computes the sum to which it adds; 0 for none */
+  bool *is_long;  /* of each instruction: it belongs to a chain that is longer than chains of its form are many */
+};
+
+static int compare_forms(const void *first, const void *second) {
+  const uint32_t *a = first, *b = second;
+  return (*a > *b) - (*a < *b);
+}
+
+/* Returns how many of the sorted forms are equal to one. */
+static size_t count_of_form(const uint32_t *sorted, size_t count, uint32_t form) {
+  const uint32_t *found = bsearch(&form, sorted, count, sizeof *sorted, compare_forms), *first = found, *last = found;
+  if (found == NULL) return 0;
+  while (first > sorted && first[-1] == form) first--;
+  while (last < sorted + count && *last == form) last++;
+  return (size_t)(last - first);
+}
+
+/*
+ * Finds the chains. Many sums of one form, as for the points of a shape, are no chains: all first steps are a run, then
+ * all second steps.
+ */
+static struct Chains chains_create(const struct IrFunction *ir, size_t local_count, const struct Forms *forms) {
+  struct Chains chains = {allocate(ir->count, sizeof *chains.before), allocate(ir->count, sizeof *chains.is_long)};
+  size_t *writer = allocate(local_count, sizeof *writer), *length = allocate(ir->count, sizeof *length);
+  uint32_t *sorted = allocate(ir->count, sizeof *sorted);
+  for (size_t i = 0; i < ir->count; i++) {
+    const struct Instruction *instruction = &ir->instructions[i];
+    sorted[i] = form_of(forms, instruction);
+    size_t before = adds_to_sum(instruction) ? writer[index_in(instruction->operands[0])] : 0;
+    bool continues = before > 0 && ir->instructions[before - 1].opcode == instruction->opcode;
+    chains.before[i] = continues ? before : 0;
+    length[i] = continues ? length[before - 1] + 1 : 1;
+    if (opcode_has_result(instruction->opcode) && space_of(instruction->result) == SPACE_LOCAL)
+      writer[index_in(instruction->result)] = i + 1;
+  }
+  if (ir->count > 0) qsort(sorted, ir->count, sizeof *sorted, compare_forms);
+  for (size_t i = ir->count; i-- > 0;) {
+    if (chains.before[i] == 0) continue;
+    if (!chains.is_long[i])
+      chains.is_long[i] = length[i] > count_of_form(sorted, ir->count, form_of(forms, &ir->instructions[i]));
+    chains.is_long[chains.before[i] - 1] |= chains.is_long[i];
+  }
+  release(writer);
+  release(length);
+  release(sorted);
+  return chains;
+}
+
+/*
+ * Puts an instruction into the level of the one that computes the sum to which it adds, so that it follows in the same
+ * run. Returns false if the other operand is not ready.
+ */
+static bool continues_chain(const struct Accesses *accesses, const struct ScheduledInstruction *before,
+                            struct ScheduledInstruction *added) {
+  const struct Instruction *instruction = added->instruction;
+  if (before->instruction->opcode != instruction->opcode || before->spaces != added->spaces ||
+      access_of(accesses, instruction->operands[1])->written >= before->level)
+    return false;
+  added->level = before->level;
+  added->form = before->form;
+  added->chain = before->chain;
+  record_accesses(accesses, instruction, added->level);
+  return true;
+}
+
+size_t *schedule_create(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks,
+                        const struct Forms *forms) {
   const struct IrFunction *ir = &function->outer;
   struct Accesses accesses = accesses_create(function, blocks);
   struct ScheduledInstruction *scheduled = allocate(ir->count, sizeof *scheduled);
   size_t *order = allocate(ir->count, sizeof *order);
+  struct Chains chains = chains_create(ir, accesses.count[SPACE_LOCAL], forms);
   size_t last_check = 0;
   for (size_t i = 0; i < ir->count; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
     bool checks = may_return(instruction->opcode);
-    size_t level = level_of(&accesses, instruction, function, blocks, checks ? last_check : 0);
-    if (checks) last_check = level;
-    scheduled[i] = (struct ScheduledInstruction){level, i, spaces_of(instruction), instruction};
+    scheduled[i] = (struct ScheduledInstruction){.number = i,
+                                                 .spaces = spaces_of(instruction),
+                                                 .form = form_of(forms, instruction),
+                                                 .chain = i,
+                                                 .instruction = instruction};
+    size_t before = chains.is_long[i] ? chains.before[i] : 0;
+    if (before == 0 || !continues_chain(&accesses, &scheduled[before - 1], &scheduled[i]))
+      scheduled[i].level = level_of(&accesses, instruction, function, blocks, checks ? last_check : 0);
+    if (checks) last_check = scheduled[i].level;
   }
   if (ir->count > 0) qsort(scheduled, ir->count, sizeof *scheduled, compare);
   for (size_t i = 0; i < ir->count; i++) order[i] = scheduled[i].number;
   for (int space = 0; space < SPACE_COUNT; space++) release(accesses.of[space]);
   release(scheduled);
+  release(chains.before);
+  release(chains.is_long);
   return order;
 }
 

@@ -5,9 +5,11 @@
 
 #include "program/codegen/regions.h"
 #include "program/expressions/accelerations.h"
+#include "program/tables/forms.h"
 
 /* Returns the indices of the instructions outside of regions, in the order of execution. */
-size_t *schedule_create(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks);
+size_t *schedule_create(const struct SeparatedFunction *function, const struct LoopedBlocks *blocks,
+                        const struct Forms *forms);
 
 /* Returns the spaces of result and operands, packed as in a table; equal for all instructions of a run. */
 uint32_t spaces_of(const struct Instruction *instruction);
