@@ -142,7 +142,7 @@ def write_system(archive):
         shutil.copy(source, folder / "system.xml")
         links["system.xml"] = "system.xml"
     try:
-        write_page(archive, folder / "live.html", origin_in(BUILD, source) if source.exists() else None)
+        write_page(archive, folder / "live.html", origin_in(BUILD, source) if source.exists() else None, cache=BUILD / "wasm")
         links = {"<b>live</b>": "live.html"} | links
     except Problem as problem:  # an FMU whose method has no sources in it
         print(f"scripts/gallery: no live page: {problem}", file=sys.stderr)

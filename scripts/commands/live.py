@@ -40,7 +40,7 @@ def main():
     origin = origin_in(arguments.build, arguments.system, arguments.robot) if arguments.system else None
     try:
         page = arguments.page or Path("build/live") / f"{arguments.fmu.stem}{'-edit' if arguments.edit else ''}.html"
-        path = write_editor(arguments.system, LABORATORY, page, robot=arguments.robot) if arguments.edit else write_page(arguments.fmu, page, origin, settings_of(arguments.fmu, dict(arguments.settings)))
+        path = write_editor(arguments.system, LABORATORY, page, robot=arguments.robot) if arguments.edit else write_page(arguments.fmu, page, origin, settings_of(arguments.fmu, dict(arguments.settings)), arguments.build / "wasm")
     except Problem as problem:
         sys.exit(f"scripts/live: {problem}")
     print(path.resolve())

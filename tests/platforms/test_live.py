@@ -16,6 +16,7 @@ import fmu
 from building import BUILD, LAGC, ROOT
 from driven_chromium import COLORS_SEEN, browser, opened  # noqa: F401
 from scripts.commands.live import origin_in
+from scripts.library.live_page import wasm
 from scripts.library.live_page.page import page_of
 from scripts.library.simulation import settings_of
 
@@ -32,7 +33,7 @@ def page_file(tmp_path_factory):
         if name not in written:
             written[name] = folder / f"{name}.html"
             origin = origin_in(BUILD, ROOT / "fmu" / name / "system.xml") if name in PULLED else None
-            written[name].write_text(page_of(fmu.archive(name), origin), encoding="utf-8")
+            written[name].write_text(page_of(fmu.archive(name), origin, cache=BUILD / "wasm"), encoding="utf-8")
         return written[name]
 
     return write
@@ -52,6 +53,20 @@ def run_natively(name, until, factor=1.0):
 
 def run_in_page(page, until):
     return dict(zip(page.evaluate("live.names"), page.evaluate("async until => (await live.run(until)).values", until)))
+
+
+def test_modules_are_kept(monkeypatch, tmp_path):
+    """A module is compiled again if its source has changed, and the newest are kept."""
+    compiled = []
+    monkeypatch.setattr(wasm, "compile_to_wasm", lambda source: compiled.append(source.read_text()) or source.read_bytes())
+    monkeypatch.setattr(wasm, "MOST_KEPT", 2)
+    source, cache = tmp_path / "fmu.c", tmp_path / "cache"
+    for text in ("one", "one", "two", "one", "three"):
+        source.write_text(text)
+        assert wasm.cached_wasm(source, cache) == text.encode()
+    assert compiled == ["one", "two", "three"] and len(list(cache.iterdir())) == 2
+    wasm.cached_wasm(source, None)
+    assert compiled[3:] == ["three"] and len(list(cache.iterdir())) == 2
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in DAILY else pytest.mark.release) for name in fmu.moving_names()])
@@ -125,7 +140,7 @@ def test_steps_back_and_settings(browser, page_file):
 def test_a_page_begins_with_values(browser, tmp_path):
     """Values given with the page apply at its start; the address has precedence."""
     file = tmp_path / "page.html"
-    file.write_text(page_of(fmu.archive("SimplePendulum"), settings=settings_of(fmu.archive("SimplePendulum"), {"theta": "30deg", "l": "20cm"})), encoding="utf-8")
+    file.write_text(page_of(fmu.archive("SimplePendulum"), settings=settings_of(fmu.archive("SimplePendulum"), {"theta": "30deg", "l": "20cm"}), cache=BUILD / "wasm"), encoding="utf-8")
     for address, l in (("", 0.2), ("#l=0.4", 0.4)):
         with opened(browser, file, address) as page:
             values = dict(zip(page.evaluate("live.names"), page.evaluate("[...live.history.samples[0][0]]")))

@@ -56,7 +56,7 @@ def page_of_fmu(tmp_path_factory):
     @functools.cache
     def write(name):
         file = folder / f"{name}.html"
-        file.write_text(page_of(fmu.archive(name)), encoding="utf-8")
+        file.write_text(page_of(fmu.archive(name), cache=fmu.ROOT / "build" / "wasm"), encoding="utf-8")
         return file
 
     return write

@@ -16,7 +16,7 @@ from ..problem import Problem
 from ..whole_files import write_whole
 from .description import scene_of
 from .origin import can_be_pulled, pulled_system
-from .wasm import compile_to_wasm
+from .wasm import cached_wasm
 
 HERE = Path(__file__).resolve().parent
 # Files of three.js, in Debian's package libjs-three, or in the wheel beside this folder.
@@ -118,15 +118,15 @@ def _title(tree):
     return tree.get("description") or tree.get("modelName")
 
 
-def _modules(source, pulled):
+def _modules(source, pulled, cache):
     """Compile the FMU, and the variant whose bodies can be pulled if there is one, to WebAssembly."""
-    return _interleaved([compile_to_wasm(one) for one in (source, pulled) if one])
+    return _interleaved([cached_wasm(one, cache) for one in (source, pulled) if one])
 
 
-def page_of(fmu, origin=None, settings=None):
+def page_of(fmu, origin=None, settings=None, cache=None):
     """
     Return the page of an FMU of FMI 2.0 as text; with an Origin bodies can be pulled, and the system can be saved. `settings` has numbers by name,
-    with which the page begins.
+    with which the page begins. `cache` is a folder that keeps compiled modules for other pages.
     """
     with zipfile.ZipFile(fmu) as archive:
         description, equations = (archive.read(name) for name in ("modelDescription.xml", "documentation/index.html"))
@@ -140,7 +140,7 @@ def page_of(fmu, origin=None, settings=None):
         found, pulled = pulled_system(origin, source, folder) if origin and has_scene else None, None
         if found and can_be_pulled(found[0]):
             data["pulled"], pulled = _text(found[0]), found[1]
-        data |= _modules(source, pulled)
+        data |= _modules(source, pulled, cache)
     if settings:
         data["settings"] = {name: float(value) for name, value in settings.items()}
     if origin:
@@ -170,6 +170,6 @@ def page_of_motion(tree, result, start):
     return page_of_data(_title(tree), data)
 
 
-def write_page(fmu, path, origin=None, settings=None):
+def write_page(fmu, path, origin=None, settings=None, cache=None):
     """Write the page of an FMU, see page_of(), and return its path."""
-    return write_whole(path, page_of(fmu, origin, settings))
+    return write_whole(path, page_of(fmu, origin, settings, cache))
