@@ -127,8 +127,8 @@ static void print_product(struct Printer *printer, double coefficient, Node base
 }
 
 /*
- * Returns the condition that does not hold where guard_condition, 1 - guard(condition, 1), is positive; ZERO for other
- * nodes.
+ * Returns the condition if guard_condition is 1 - guard(condition, 1), which is positive where the condition does not
+ * hold; ZERO for other nodes.
  */
 static Node opposite_of(const struct Graph *graph, Node guard_condition) {
   const struct Vertex *sum = &graph->vertices[guard_condition], *guard;

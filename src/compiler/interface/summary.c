@@ -32,7 +32,7 @@ static void add_names(struct NodeNames *names, const struct Model *model, const 
 /* Returns the names of the first calculated parameters and definitions. Linearized equations have no definitions. */
 static struct NodeNames author_names(const struct Model *model) {
   const struct Graph *graph = model->graph;
-  for (size_t i = 0; i < model->definitions.count; i++) /* makes all nodes before they are counted */
+  for (size_t i = 0; i < model->definitions.count; i++) /* creates all nodes before they are counted */
     as_written(model, model->definitions.items[i].node);
   for (size_t i = 0; i < model->calculated.count; i++) as_written(model, model->calculated.items[i].node);
   struct NodeNames names = {.of = allocate(graph->count, sizeof *names.of), .count = graph->count};

@@ -41,7 +41,7 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind s, fmi2Boo
   return fmi2OK;
 }
 
-/* There is no status of other types. */
+/* Defines a function that returns fmi2Discard, as no status has this type. */
 #define NO_STATUS(function, type)                                                                                      \
   fmi2Status function(fmi2Component c, const fmi2StatusKind s, fmi2##type *value) {                                    \
     (void)s;                                                                                                           \

@@ -37,7 +37,7 @@ static void copy_number(size_t width, double *to, const double *from) {
 
 /*
  * Computes row i of L and column i of U: each solves a triangular system of the rows and columns before. row and column
- * hold them at their full indices, and are 0 elsewhere, before and after. False if the pivot is lost.
+ * hold them at their full indices during the call, and are 0 otherwise. False if the pivot is lost.
  */
 static bool factor_row(size_t width, size_t i, double *l, double *u, double *row, double *column) {
   const struct LuPattern *pattern = &lagrangian.implicit.lu_pattern;

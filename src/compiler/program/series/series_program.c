@@ -165,7 +165,7 @@ static void append_states(struct SeriesBuilder *builder, const struct Equations 
     append_state(builder, 2 * n + i, series_coefficient(builder, equations->rates.nodes[i]));
 }
 
-/* The final slots, rows and local variables, of slots in the provisional spaces SPACE_OF_... (series_builder.h). */
+/* Maps slots in the provisional spaces SPACE_OF_... (series_builder.h) to final slots: rows and local variables. */
 struct Rows {
   const struct SeriesBuilder *builder;
   size_t *row; /* for each node with has_row of the builder: its row */

@@ -185,7 +185,7 @@ static Node floor_in_place(struct Parser *parser, Node node) {
   return is_value ? function(parser->graph, FLOOR, node, ZERO) : floor_of(parser->scope, node, current_line(parser));
 }
 
-/* Notes the expression of mod(a, divisor), of which checks know the range. */
+/* Records the expression of mod(a, divisor) for checks, which know its range. */
 static void note_remainder(const struct Parser *parser, Node node, Node divisor) {
   bool is_value = (parser->location.kinds & AT_INSTANT) != 0;
   if (parser->scope->switches == NULL || is_value) return;

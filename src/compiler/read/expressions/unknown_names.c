@@ -91,7 +91,7 @@ void report_reserved(struct Parser *parser, const char *name) {
          parser->location.what, name, expected_names(parser));
 }
 
-/* Lists the functions: those of the graph, of one argument first, then those with arguments of their own kinds. */
+/* Lists the functions: those of the graph, with one argument first, then those that the parser expands. */
 static char *function_names(void) {
   static const char others[] =
       "sqrt, floor, ceil, round, mod, if, der, diff, sum, integral, uniform, gauss, distance, dot or norm";

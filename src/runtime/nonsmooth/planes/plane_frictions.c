@@ -21,7 +21,7 @@
 #include "nonsmooth/planes/plane_rests.h"
 
 /*
- * In rounding errors of the last solution: accelerations off the slip direction that count as 0. plane_rests.c lets
+ * Acceleration across the slip direction that counts as 0, in rounding errors of the last solution. plane_rests.c lets
  * frictions slip within a margin of 100 rounding errors to their limit.
  */
 static const double in_rounding_error = 200.0;
@@ -35,7 +35,7 @@ static const char *reject_directions(const struct Resolution *resolution) {
 }
 
 /*
- * Finds the modes of all that is at rest from all its forces at once. False if there are none, or it was done before.
+ * Finds the modes of all frictions at rest from all their forces at once. False if there are none, or on a further call.
  */
 static bool resolve_together(struct Resolution *resolution) {
   if (resolution->has_found_forces) return false;
@@ -53,7 +53,7 @@ static bool is_sliding_otherwise(const struct Resolution *resolution, const stru
   return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
 }
 
-/* Lets a sticking friction slide that moves, as after an impact. True if it does. */
+/* Lets a sticking friction slide if it has a velocity, as after an impact. True if its mode changes. */
 static bool leave_rest(struct Resolution *resolution, const struct PlaneState *state) {
   if (!(state->speed > state->small)) return false;
   plane_slide(resolution, state);
@@ -107,7 +107,7 @@ static bool change_force(struct Resolution *resolution, const struct PlaneState 
   return true;
 }
 
-/* Updates the bounds and the direction of a sliding friction. True if it had to. */
+/* Updates the bounds and the direction of a sliding friction. True if they change. */
 static bool change_slide(struct Resolution *resolution, const struct PlaneState *state) {
   if (!is_sliding_otherwise(resolution, state)) return false;
   plane_slide(resolution, state);
@@ -162,7 +162,7 @@ static void set_plane(struct Resolution *resolution, size_t plane, bool slides) 
   else plane_slip(resolution, &state, slip_direction);
 }
 
-/* Before the start they move freely or slide, with the direction along: there is no slip direction yet. */
+/* Sets the modes before the first resolution: free, or sliding at a velocity. The first axis is the slip direction. */
 static void guess(struct Instance *instance) {
   struct Resolution resolution = resolution_of(instance);
   const struct SwitchTable *switches = resolution.switches;
