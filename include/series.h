@@ -18,12 +18,6 @@
 #include <stddef.h>
 
 #include "real.h"
-#include "reciprocals.h"
-
-/* Length of a series. Orders reach SERIES_LENGTH - 2: the state has one coefficient more than its derivative. */
-enum { SERIES_LENGTH = 24 };
-
-typedef Real Series[SERIES_LENGTH];
 
 /* Keeps one copy of each function that contains the branches over all orders. */
 #ifdef __GNUC__
@@ -161,56 +155,6 @@ static SERIES_NOT_INLINE void series_middles(int k, size_t count, const struct S
 }
 
 /*
- * Returns (a b)_k. b is the row that is computed later: its newest coefficient is used last. Here and below,
- * ..._around() takes the middle terms as an argument.
- */
-static SERIES_INLINE double series_product_around(double middle, int k, const double *a, const double *b) {
-  return (middle + a[k] * b[0]) + a[0] * b[k];
-}
-
-static SERIES_INLINE double series_product(int k, const double *a, const double *b) {
-  return series_product_around(series_middle(k, a + 1, b), k, a, b);
-}
-
-/* Returns (a b)_k without the term a_0 b_k. */
-static SERIES_INLINE double series_rest_around(double middle, int k, const double *a, const double *b) {
-  return middle + a[k] * b[0];
-}
-
-static SERIES_INLINE double series_rest(int k, const double *a, const double *b) {
-  return series_rest_around(series_middle(k, a + 1, b), k, a, b);
-}
-
-/* Returns (a a)_k. */
-static SERIES_INLINE double series_square_around(double middle, int k, const double *a) {
-  return middle + 2.0 * (a[0] * a[k]);
-}
-
-static SERIES_INLINE double series_square(int k, const double *a) {
-  return series_square_around(series_middle(k, a + 1, a), k, a);
-}
-
-/* Returns (a / b)_k; top is a_k, inverse is 1 / b_0, c the quotient's coefficients below k. */
-static SERIES_INLINE double series_quotient_around(double middle, int k, double top, double inverse, const double *b,
-                                                   const double *c) {
-  return (top - (middle + b[k] * c[0])) * inverse;
-}
-
-static SERIES_INLINE double series_quotient(int k, double top, double inverse, const double *b, const double *c) {
-  return series_quotient_around(series_middle(k, b + 1, c), k, top, inverse, b, c);
-}
-
-/* Returns (sqrt a)_k; c holds the root's coefficients below k. The root of an identical 0 is 0. */
-static SERIES_INLINE double series_root_around(double middle, int k, const double *a, const double *c) {
-  if (c[0] == 0.0 && c[k - 1] == 0.0 && a[k] == 0.0) return 0.0;
-  return (a[k] - middle) / (2.0 * c[0]);
-}
-
-static SERIES_INLINE double series_root(int k, const double *a, const double *c) {
-  return series_root_around(series_middle(k, c + 1, c), k, a, c);
-}
-
-/*
  * Returns (a^n)_k for a real n; c holds the power's coefficients below k. If a_m is the first nonzero coefficient and
  * m > 0, then a = t^m b and a^n = t^(m n) b^n, with b_j = a_(m+j) and (b^n)_j = c_(m n+j). Then n must be a whole
  * number >= 0, else the result is NAN.
@@ -228,15 +172,6 @@ static inline double series_power(int k, double n, const double *a, const double
   return sum / (last * a[m]);
 }
 
-/* Returns c_k of c' = a' b; rate holds the coefficients of a'. */
-static SERIES_INLINE double series_integral_around(double middle, int k, const double *rate, const double *b) {
-  return (middle + rate[k - 1] * b[0]) * reciprocal[k];
-}
-
-static SERIES_INLINE double series_integral(int k, const double *rate, const double *b) {
-  return series_integral_around(series_middle(k, rate, b), k, rate, b);
-}
-
 /* Returns c_k of c' = a' / b; top is a_k. */
 static inline double series_ratio_integral(int k, double top, const double *b, const double *c) {
   double sum = 0.0;
@@ -251,11 +186,6 @@ static inline double series_sign(int k, const double *a) {
   return (double)((a[j] > 0.0) - (a[j] < 0.0));
 }
 
-/* Returns |a|_k, on the piece that holds just after t = 0. */
-static inline double series_absolute(int k, const double *a) {
-  return series_sign(k, a) * a[k];
-}
-
 /* Returns coefficient k - 1 of y' x - x' y, divided by k. */
 static inline double series_area(int k, const double *y, const double *x) {
   double sum = 0.0;
@@ -263,9 +193,10 @@ static inline double series_area(int k, const double *y, const double *x) {
   return sum / k;
 }
 
-/* Returns atan2(y, x)_k; b holds the coefficients of x^2 + y^2, c the angle's below k. */
-static inline double series_angle(int k, const double *y, const double *x, const double *b, const double *c) {
-  return series_ratio_integral(k, series_area(k, y, x), b, c);
+#include "series_terms.h"
+
+static SERIES_INLINE double series_square(int k, const double *a) {
+  return series_square_around(series_middle(k, a + 1, a), k, a);
 }
 
 #endif

@@ -2,7 +2,6 @@
 
 #include <string.h>
 
-#include "base/memory.h"
 #include "xml_output.h"
 
 /* Prefix of type names, which must differ from names of variables. */

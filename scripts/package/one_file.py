@@ -46,7 +46,7 @@ def included_once(text, root, included):
             return ""
         included.add(found[1])
         file = next(path for path in (root / "include" / found[1], root / "src" / "runtime" / found[1]) if path.exists())
-        return included_once(file.read_text(encoding="utf-8"), root, included)
+        return included_once(file.read_text(encoding="utf-8").replace("#pragma once\n", ""), root, included)
 
     return INCLUDE.sub(content, text)
 

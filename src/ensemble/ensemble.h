@@ -2,8 +2,7 @@
  * Simulates many runs of a system at once, a vector lane for each (lane_steps.h); a lane that finishes takes the next
  * run. Start values and parameters vary; outputs are sampled at given times. The functions are thread-safe.
  */
-#ifndef ENSEMBLE_H
-#define ENSEMBLE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -30,5 +29,3 @@ ENSEMBLE_EXPORT bool ensemble_supports(const struct Ensemble *ensemble);
 
 /* Simulates runs first .. first + count - 1. Returns false if memory is exhausted. */
 ENSEMBLE_EXPORT bool ensemble_run(const struct Ensemble *ensemble, size_t first, size_t count);
-
-#endif

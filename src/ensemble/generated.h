@@ -1,6 +1,5 @@
 /* Precedes a generated system compiled for lanes: replaces the functions of math.h by those of lane_functions.h. */
-#ifndef GENERATED_H
-#define GENERATED_H
+#pragma once
 
 #include "lane_functions.h"
 #include "lane_system.h"
@@ -34,5 +33,3 @@
 #define random_gauss(x, y) lanes_random_gauss(LANES_OF(x), LANES_OF(y))
 #define fmin(x, y) lanes_smaller(LANES_OF(x), LANES_OF(y))
 #define fmax(x, y) lanes_larger(LANES_OF(x), LANES_OF(y))
-
-#endif

@@ -3,8 +3,7 @@
  * by the criterion of detection/search.c. For other lanes, the FMU's own runtime handles one run after another
  * (single/single_run.h).
  */
-#ifndef LANE_EVENTS_H
-#define LANE_EVENTS_H
+#pragma once
 
 #include "lane_steps.h"
 #include "single/single_run.h"
@@ -47,5 +46,3 @@ Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes);
 
 /* Returns the lanes in which the checks at the end of a run fail for steps->state. */
 Mask lane_events_check_end(struct LaneEvents *events, Lanes time, Mask lanes);
-
-#endif

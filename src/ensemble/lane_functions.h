@@ -1,6 +1,5 @@
 /* Elementary functions for lanes. */
-#ifndef LANE_FUNCTIONS_H
-#define LANE_FUNCTIONS_H
+#pragma once
 
 #include "bounded_functions.h"
 #include "lanes.h"
@@ -118,5 +117,3 @@ LANES_INLINE Lanes sine_after(Lanes x, int64_t more_turns) {
 LANE_SINE(sin, 0)
 LANE_SINE(cos, 1)
 #undef LANE_SINE
-
-#endif

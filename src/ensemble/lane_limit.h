@@ -38,66 +38,30 @@ void lane_limit(struct SeriesLimit *limit, SingleLimit *rule, Lanes bound, const
 #define LANE_LIMIT_RANGE LANES_OF(4.0)
 #define LANE_LIMIT_SHARE 0.9
 
-LANES_INLINE void series_limit_exponential(struct SeriesLimit *limit, const Lanes *u, const char *function) {
-  (void)function;
-  lane_limit(limit, single_limit_exponential, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
-}
-
-LANES_INLINE void series_limit_hyperbolic(struct SeriesLimit *limit, const Lanes *u, const char *function) {
-  (void)function;
-  lane_limit(limit, single_limit_hyperbolic, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
-}
-
-LANES_INLINE void series_limit_bounded(struct SeriesLimit *limit, const Lanes *u, const char *function) {
-  (void)function;
-  lane_limit(limit, single_limit_bounded, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
-}
-
-LANES_INLINE void series_limit_tanh(struct SeriesLimit *limit, const Lanes *u) {
-  lane_limit(limit, single_limit_tanh, LANE_LIMIT_RANGE, u, NULL, (Lanes){0});
-}
-
-LANES_INLINE void series_limit_tangent(struct SeriesLimit *limit, const Lanes *u) {
-  lane_limit(limit, single_limit_tangent, (Lanes){0}, u, NULL, (Lanes){0});
-}
-
-LANES_INLINE void series_limit_positive(struct SeriesLimit *limit, const Lanes *u, const char *function) {
-  (void)function;
-  lane_limit(limit, single_limit_positive, LANE_LIMIT_SHARE * lanes_absolute(u[0]), u, NULL, (Lanes){0});
-}
-
 LANES_INLINE Lanes lane_limit_bound(const Lanes *u, double share) {
   return LANE_LIMIT_SHARE * (share < 1.0 ? share : 1.0) * lanes_absolute(u[0]);
 }
 
-LANES_INLINE void series_limit_quotient(struct SeriesLimit *limit, const Lanes *u, double share) {
-  lane_limit(limit, single_limit_quotient, lane_limit_bound(u, share), u, NULL, LANES_OF(share));
-}
-
-LANES_INLINE void series_limit_root(struct SeriesLimit *limit, const Lanes *u, double share) {
-  lane_limit(limit, single_limit_root, lane_limit_bound(u, share), u, NULL, LANES_OF(share));
-}
-
-LANES_INLINE void series_limit_whole_power(struct SeriesLimit *limit, const Lanes *u, double share) {
-  lane_limit(limit, single_limit_whole_power, lane_limit_bound(u, share), u, NULL, LANES_OF(share));
-}
-
-LANES_INLINE void series_limit_division(struct SeriesLimit *limit, const Lanes *u, const Lanes *numerator,
-                                        double share) {
-  lane_limit(limit, single_limit_division, lane_limit_bound(u, share), u, numerator, LANES_OF(share));
-}
-
-LANES_INLINE void series_limit_power(struct SeriesLimit *limit, const Lanes *u, Lanes exponent) {
-  lane_limit(limit, single_limit_power, (Lanes){0}, u, NULL, exponent);
-}
-
-LANES_INLINE void series_limit_sign(struct SeriesLimit *limit, const Lanes *u, const char *function) {
-  (void)function;
-  lane_limit(limit, single_limit_sign, LANE_LIMIT_SHARE * lanes_absolute(u[0]), u, NULL, (Lanes){0});
-}
-
-LANES_INLINE void series_limit_angle(struct SeriesLimit *limit, const Lanes *y, const Lanes *x) {
-  lane_limit(limit, single_limit_angle, LANE_LIMIT_SHARE * lanes_absolute(y[0]), y, x, (Lanes){0});
-}
+/* Defines a limit by the rule for single lanes of the same name. The last argument lists the further parameters. */
+#define LANE_LIMIT(name, bound, other, number, ...)                                                                    \
+  LANES_INLINE void series_limit_##name(struct SeriesLimit *limit, const Lanes *u __VA_ARGS__) {                       \
+    lane_limit(limit, single_limit_##name, bound, u, other, number);                                                   \
+  }
+#define LANE_LIMIT_FUNCTION , const char *function __attribute__((unused))
+LANE_LIMIT(exponential, LANE_LIMIT_RANGE, NULL, (Lanes){0}, LANE_LIMIT_FUNCTION)
+LANE_LIMIT(hyperbolic, LANE_LIMIT_RANGE, NULL, (Lanes){0}, LANE_LIMIT_FUNCTION)
+LANE_LIMIT(bounded, LANE_LIMIT_RANGE, NULL, (Lanes){0}, LANE_LIMIT_FUNCTION)
+LANE_LIMIT(tanh, LANE_LIMIT_RANGE, NULL, (Lanes){0}, )
+LANE_LIMIT(tangent, (Lanes){0}, NULL, (Lanes){0}, )
+LANE_LIMIT(positive, lane_limit_bound(u, 1.0), NULL, (Lanes){0}, LANE_LIMIT_FUNCTION)
+LANE_LIMIT(sign, lane_limit_bound(u, 1.0), NULL, (Lanes){0}, LANE_LIMIT_FUNCTION)
+LANE_LIMIT(angle, lane_limit_bound(u, 1.0), x, (Lanes){0}, , const Lanes *x)
+LANE_LIMIT(quotient, lane_limit_bound(u, share), NULL, LANES_OF(share), , double share)
+LANE_LIMIT(root, lane_limit_bound(u, share), NULL, LANES_OF(share), , double share)
+LANE_LIMIT(whole_power, lane_limit_bound(u, share), NULL, LANES_OF(share), , double share)
+LANE_LIMIT(division, lane_limit_bound(u, share), numerator, LANES_OF(share), , const Lanes *numerator, double share)
+LANE_LIMIT(power, (Lanes){0}, NULL, exponent, , Lanes exponent)
+#undef LANE_LIMIT
+#undef LANE_LIMIT_FUNCTION
 
 #endif

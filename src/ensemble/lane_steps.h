@@ -3,8 +3,7 @@
  * with the same rule (methods/taylor_rule.h). All lanes share the order, which follows from the tolerance; each has
  * its own time and step. Branches become masks, so that a lane's results do not depend on other lanes.
  */
-#ifndef LANE_STEPS_H
-#define LANE_STEPS_H
+#pragma once
 
 #include "lane_system.h"
 
@@ -58,5 +57,3 @@ struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time);
 
 /* Evaluates the state at a time within the step into steps->state. */
 void lane_steps_take_state(struct LaneSteps *steps, Lanes time);
-
-#endif

@@ -2,8 +2,7 @@
  * The generated system for lanes: include/lagrangian.h with the types of this folder. The same library has the system
  * for single runs (single/single_run.h), so that names of both get a prefix here.
  */
-#ifndef LANE_SYSTEM_H
-#define LANE_SYSTEM_H
+#pragma once
 
 #include "lane_limit.h"
 #include "lane_real.h"
@@ -35,5 +34,3 @@
 #include "lagrangian.h"
 #include "ldlt.h"
 #include "saddle.h"
-
-#endif

@@ -1,6 +1,5 @@
 /* Values of the FMU's variables in lanes. */
-#ifndef LANE_VALUES_H
-#define LANE_VALUES_H
+#pragma once
 
 #include "ensemble.h"
 #include "lane_events.h"
@@ -15,5 +14,3 @@ bool lane_values_can_report(const struct ScalarVariable *variable);
  */
 Mask lane_values_report(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
                         const size_t *run, const size_t *slot);
-
-#endif

@@ -2,8 +2,7 @@
  * Vectors with a number for each of LANES runs, as wide as the processor's vectors. Operations on a lane never
  * depend on other lanes or on LANES. So a run has the same results in any ensemble and on any processor.
  */
-#ifndef LANES_H
-#define LANES_H
+#pragma once
 
 #include <math.h>
 #include <stdbool.h>
@@ -63,5 +62,3 @@ LANES_INLINE Lanes lanes_smaller(Lanes a, Lanes b) {
 LANES_INLINE Mask lanes_are_finite(Lanes a) {
   return lanes_absolute(a) < INFINITY;
 }
-
-#endif

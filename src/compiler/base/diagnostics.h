@@ -4,7 +4,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 
-/* Most errors shown for a file: an error inside a loop may repeat ten thousand times. */
+/* Most errors shown for a file: an error inside a loop may repeat ten thousand times. Counted from 1 more, none is. */
 enum { ERROR_LIMIT = 100 };
 
 /* A line of a file, for messages that are printed while another file is read, or later. */

@@ -4,7 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "display/products.h"
 

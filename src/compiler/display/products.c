@@ -1,6 +1,5 @@
 #include "display/products.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <string.h>
 

@@ -80,6 +80,10 @@ void similar_consider_all(struct SimilarName *similar, const struct Names *names
     if (names->slots[i].text != NULL) similar_consider(similar, names->slots[i].text);
 }
 
+const char *suggestion(const char *known, const char *otherwise) {
+  return known != NULL ? format_text("did you mean '%s'?", known) : otherwise;
+}
+
 char *list_of_names(const char *const *names, size_t count) {
   char *list = copy_text("");
   size_t shown = count > LIST_LIMIT ? LIST_LIMIT - 1 : count;

@@ -16,6 +16,9 @@ struct SimilarName {
  */
 void similar_consider(struct SimilarName *similar, const char *known);
 
+/* Returns "did you mean 'known'?", or the other remedy if known is NULL. */
+const char *suggestion(const char *known, const char *otherwise);
+
 /* Returns the names as a text for messages: the first ones, and the number of the others. */
 char *list_of_names(const char *const *names, size_t count);
 

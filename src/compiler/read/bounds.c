@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "algebra/cone.h"
-#include "algebra/functions.h"
 #include "base/memory.h"
 
 static const struct Bounds everything = {-INFINITY, INFINITY};

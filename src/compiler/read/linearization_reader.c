@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "names/similar.h"
 #include "base/paths.h"
 #include "read/context/value_texts.h"
 #include "read/elements/elements.h"
@@ -51,12 +52,9 @@ static void set_point(struct Model *model, struct Scope *scope, const char *name
   enum SymbolKind kind = is_symbol ? graph_symbol_of(model->graph, quantity->node)->kind : PARAMETER;
   if (kind != COORDINATE && kind != VELOCITY && kind != STATE && kind != INPUT) {
     const char *similar = quantity == NULL ? scope_similar_name(scope, name) : NULL;
-    if (similar != NULL)
-      report_error(diagnostics, line, "the operating point sets '%s', which does not exist; did you mean '%s'?", name,
-                   similar);
-    else
-      report_error(diagnostics, line,
-                   "the operating point sets '%s'; expected a coordinate, a velocity, a state or an input", name);
+    report_error(diagnostics, line, "the operating point sets '%s'%s; %s", name,
+                 similar != NULL ? ", which does not exist" : "",
+                 suggestion(similar, "expected a coordinate, a velocity, a state or an input"));
     return;
   }
   Node symbol = model->graph->vertices[quantity->node].left;

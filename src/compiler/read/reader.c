@@ -34,7 +34,6 @@
 #include "robots/robot_system.h"
 #include "read/shapes/drawn_lines.h"
 #include "read/space/frames.h"
-#include "read/tables/table.h"
 #include "xml/xml.h"
 
 /* Adds the symbols of accelerations and sets the time derivatives of time, coordinates and velocities. */

@@ -3,7 +3,6 @@
 #include "algebra/functions.h"
 #include "base/memory.h"
 #include "write/c_text.h"
-#include "write/instruction_text.h"
 
 static void write_functions(FILE *file, const struct Encoding *encoding, int arity, const char *type,
                             const char *name) {

@@ -1,4 +1,3 @@
-#include <math.h>
 
 #include "base/memory.h"
 #include "write/c_text.h"

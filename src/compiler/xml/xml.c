@@ -5,7 +5,6 @@
 #include <libxml/parser.h>
 
 #include "base/memory.h"
-#include "base/paths.h"
 #include "xml/nodes.h"
 #include "xml/schema.h"
 #include "xml/source_text.h"

@@ -1,6 +1,5 @@
 /* Functions that are applied lane by lane, compiled for one run. */
-#ifndef SINGLE_LANE_H
-#define SINGLE_LANE_H
+#pragma once
 
 /* Returns a coefficient as series_power() of include/series.h. */
 double single_power(int k, double n, const double *a, const double *c);
@@ -12,5 +11,3 @@ SingleLimit single_limit_exponential, single_limit_hyperbolic, single_limit_boun
     single_limit_tangent;
 SingleLimit single_limit_positive, single_limit_quotient, single_limit_root, single_limit_whole_power;
 SingleLimit single_limit_division, single_limit_power, single_limit_sign, single_limit_angle;
-
-#endif

@@ -7,7 +7,6 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "instance/event_laws.h"
-#include "instance/projection.h"
 #include "stepping/start.h"
 
 /* Events in a run above which the FMU takes over, which detects Zeno behaviour. */

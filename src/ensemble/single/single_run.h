@@ -2,8 +2,7 @@
  * The FMU's own runtime, for lanes one by one: starts, events and constraints. It treats a lane as a run whose last
  * step has the lane's series.
  */
-#ifndef SINGLE_RUN_H
-#define SINGLE_RUN_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -61,5 +60,3 @@ bool single_run_keep_constraints(struct SingleRun *run, const struct LaneView *l
 
 /* True if the checks at the end of a run succeed at this time and state, which has the stride of the lane. */
 bool single_run_may_end(struct SingleRun *run, const struct LaneView *lane, double time, const double *state);
-
-#endif

@@ -5,7 +5,6 @@
 #include "base/memory.h"
 #include "robots/description/shape_pairs.h"
 #include "robots/robot_shapes.h"
-#include "robots/robot_tree.h"
 
 /* Returns the link that carries the parent of this carrier; NULL for the root. */
 static const struct RobotLink *carrier_before(const struct RobotLink *carrier) {

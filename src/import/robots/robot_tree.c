@@ -119,9 +119,8 @@ static void enter_names(struct Connection *connection) {
 
 static void report_missing(const char *kind, const char *name, const char *what, long line,
                            const struct SimilarName *similar, struct Diagnostics *diagnostics) {
-  report_error(diagnostics, line, "there is no %s '%s' for %s; %s%s%s", kind, name, what,
-               similar->best != NULL ? "did you mean '" : "expected an existing name",
-               similar->best != NULL ? similar->best : "", similar->best != NULL ? "'?" : "");
+  report_error(diagnostics, line, "there is no %s '%s' for %s; %s", kind, name, what,
+               suggestion(similar->best, "expected an existing name"));
 }
 
 /* Returns the entry of this name; NULL after reporting that there is none. */

@@ -153,39 +153,6 @@ static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Robot
   APPEND(link->collisions, link->collision_count, collision);
 }
 
-/* True if the attribute has this number of numbers. They must not be negative unless may_be_negative. */
-static bool has_numbers(xmlNodePtr node, const char *name, size_t count, bool may_be_negative) {
-  double values[4];
-  char *text = attribute(node, name);
-  bool is_right = text != NULL && parse_numbers(text, count, values) == count;
-  for (size_t i = 0; i < count && is_right; i++) is_right = may_be_negative || values[i] >= 0;
-  return is_right;
-}
-
-/* True if a <visual> is valid. Errors in it are not reported, as the motion does not depend on it. */
-static bool is_sound_visual(xmlNodePtr visual) {
-  static const struct {
-    const char *type, *attribute;
-    size_t count;
-  } needed[] = {{"sphere", "radius", 1},   {"box", "size", 3},       {"cylinder", "radius", 1},
-                {"cylinder", "length", 1}, {"capsule", "radius", 1}, {"capsule", "length", 1}};
-  xmlNodePtr geometry = only_child_of(visual, "geometry");
-  for (xmlNodePtr node = visual->children; node != NULL; node = node->next)
-    for (int i = 0; i < 2 && is_element(node, "origin"); i++) {
-      const char *name = i == 0 ? "xyz" : "rpy";
-      if (node != only_child_of(visual, "origin")) return false;
-      if (has_attribute(node, name) && !has_numbers(node, name, 3, true)) return false;
-    }
-  size_t count = 0;
-  for (xmlNodePtr node = geometry != NULL ? geometry->children : NULL; node != NULL; node = node->next) {
-    count += node->type == XML_ELEMENT_NODE;
-    for (size_t i = 0; i < sizeof needed / sizeof *needed; i++)
-      if (is_element(node, needed[i].type) && !has_numbers(node, needed[i].attribute, needed[i].count, false))
-        return false;
-  }
-  return count == 1;
-}
-
 /* Returns the <color> of the material of this name anywhere in the file; NULL for none. */
 static xmlNodePtr find_color(xmlNodePtr node, const char *name) {
   xmlNodePtr color = NULL;
@@ -207,20 +174,27 @@ static char *read_color(xmlNodePtr visual) {
   return color_text(rgba);
 }
 
-/* Reads a <visual>. Returns false if it cannot be drawn. */
+/*
+ * Reads a <visual>. Returns false if it cannot be drawn. Errors in it are not reported, as the motion does not depend
+ * on it.
+ */
 static bool read_visual(struct RobotFile *urdf, xmlNodePtr node, struct RobotLink *link) {
   char *problem = NULL;
-  struct Collision visual = {.line = line_of(node)};
-  bool is_right = is_sound_visual(node);
-  if (is_right) {
-    visual.placement = read_origin(urdf, node);
-    visual.color = read_color(node);
-    is_right = read_geometry(urdf, child_of(urdf, node, "geometry"), false, &visual, &problem);
-  }
+  struct Diagnostics quiet = *urdf->diagnostics;
+  struct RobotFile file = {.robot = urdf->robot, .options = urdf->options, .diagnostics = &quiet};
+  quiet.errors = ERROR_LIMIT + 1;
+  struct Collision visual = {.placement = read_origin(&file, node), .line = line_of(node)};
+  xmlNodePtr geometry = child_of(&file, node, "geometry");
+  bool is_right = quiet.errors == ERROR_LIMIT + 1 && geometry != NULL && xmlChildElementCount(geometry) == 1 &&
+                  read_geometry(&file, geometry, false, &visual, &problem) && quiet.errors == ERROR_LIMIT + 1;
   note_mesh_problem(urdf, problem);
-  if (!is_right) leave_out(urdf, "visual");
-  if (is_right) APPEND(link->visuals, link->visual_count, visual);
-  return is_right;
+  if (!is_right) {
+    leave_out(urdf, "visual");
+    return false;
+  }
+  visual.color = read_color(node);
+  APPEND(link->visuals, link->visual_count, visual);
+  return true;
 }
 
 /* Reads the visuals of a link. If some cannot be drawn, the collisions are drawn instead. */

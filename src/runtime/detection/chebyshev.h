@@ -3,8 +3,7 @@
  * Approximation Practice, 2013). s in [-1, 1] is the time in the interval; T_k(s) is at most 1 in size, so coefficients
  * bound the polynomial.
  */
-#ifndef CHEBYSHEV_H
-#define CHEBYSHEV_H
+#pragma once
 
 #include "real.h"
 
@@ -44,5 +43,3 @@ Real chebyshev_value(const Real *c, Real slot);
 
 /* Computes the coefficients by powers of the time from the middle of an interval of length 2 half. */
 void chebyshev_powers(const Real *c, Real half, Real *power);
-
-#endif

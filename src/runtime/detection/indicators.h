@@ -1,6 +1,5 @@
 /* Indicators: values whose change of sign may change a mode. */
-#ifndef INDICATORS_H
-#define INDICATORS_H
+#pragma once
 
 #include "instance/event_laws.h"
 
@@ -39,5 +38,3 @@ double indicator_sign(const struct Instance *instance, size_t indicator);
 
 /* How far an event may leave an indicator below 0, in units of its rounding error bound. */
 enum { FLOOR_IN_ERROR_BOUND = 64 };
-
-#endif

@@ -1,6 +1,5 @@
 /* Search for events: the first time at which an indicator changes its sign (search.c). */
-#ifndef SEARCH_H
-#define SEARCH_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -31,5 +30,3 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
  * False if there is none.
  */
 bool search_for_jump(struct Instance *instance, double *time, double *state, size_t *indicator);
-
-#endif

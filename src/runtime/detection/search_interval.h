@@ -1,6 +1,5 @@
 /* Intervals of time in which no function in the indicators can hide between samples (search_interval.c). */
-#ifndef SEARCH_INTERVAL_H
-#define SEARCH_INTERVAL_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -14,5 +13,3 @@ size_t search_interval_sample_count(void);
  * the states at the CHEBYSHEV_NODES of the interval, a row each; NULL if they are not all available.
  */
 bool search_interval_shorten(struct Instance *instance, double from, double *to, const double **samples);
-
-#endif

@@ -1,6 +1,5 @@
 /* Evaluation of the generated functions at the instance's time and state. */
-#ifndef EVALUATE_H
-#define EVALUATE_H
+#pragma once
 
 #include <math.h>
 
@@ -91,5 +90,3 @@ enum Status evaluate_variable(struct Instance *instance, const struct ScalarVari
  */
 double evaluate_along(const struct ScalarVariable *variable, const struct Point *point, const struct Seed *seed,
                       const double *derivative_along, const double *acceleration, const double *acceleration_along);
-
-#endif

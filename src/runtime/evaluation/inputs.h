@@ -1,6 +1,5 @@
 /* Inputs as polynomials of time over a communication step. */
-#ifndef INPUTS_H
-#define INPUTS_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -20,5 +19,3 @@ void evaluate_advance_inputs(struct Instance *instance, double time);
  * limits.
  */
 bool limit_inputs(struct Instance *instance, double length);
-
-#endif

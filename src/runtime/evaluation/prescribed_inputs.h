@@ -1,6 +1,5 @@
 /* Inputs in constraints: prescribed motion. */
-#ifndef PRESCRIBED_INPUTS_H
-#define PRESCRIBED_INPUTS_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -20,5 +19,3 @@ static inline bool is_prescribed_input(size_t input) {
  * the polynomial that was set for the input, or else follows from the derivatives.
  */
 void prescribed_inputs_begin_step(struct Instance *instance);
-
-#endif

@@ -1,6 +1,5 @@
 /* Evaluations for solvers and events at times and states of their own. */
-#ifndef SERVICES_H
-#define SERVICES_H
+#pragma once
 
 #include "instance/solver.h"
 
@@ -46,5 +45,3 @@ double solver_error(const struct Instance *instance);
 
 /* The reason that is logged if solver_step_vanishes(). */
 extern const char solver_vanished_step[];
-
-#endif

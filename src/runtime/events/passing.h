@@ -1,6 +1,5 @@
 /* Communication steps through events: the solver restarts after each of them. */
-#ifndef PASSING_H
-#define PASSING_H
+#pragma once
 
 #include "instance/event_laws.h"
 
@@ -16,5 +15,3 @@ const char *events_update(struct Instance *instance);
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                 struct EventProgress *progress);
-
-#endif

@@ -1,6 +1,5 @@
 /* Checks of arguments; each logs an error. */
-#ifndef CHECK_H
-#define CHECK_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -9,5 +8,3 @@ bool check_array(struct Instance *instance, const void *array, size_t count, con
 
 /* Returns the variable of this value reference and type; NULL after logging an error. */
 const struct ScalarVariable *check_reference(struct Instance *instance, unsigned reference, enum VariableType type);
-
-#endif

@@ -1,6 +1,5 @@
 /* Derivatives of variables. */
-#ifndef DERIVATIVES_H
-#define DERIVATIVES_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -21,5 +20,3 @@ enum Status derivatives_in_time(struct Instance *instance, const unsigned *refer
 /* Computes time derivatives of outputs, each of its order. */
 enum Status output_derivatives(struct Instance *instance, const unsigned *reference, size_t count, const int *order,
                                double *value);
-
-#endif

@@ -1,6 +1,5 @@
 /* States in which functions may be called: FMI 2.0.4, sections 3.2.3 and 4.2.4; FMI 3.0, sections 2.3, 3.2 and 4.2. */
-#ifndef LIFE_CYCLE_H
-#define LIFE_CYCLE_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -41,5 +40,3 @@ enum FunctionClass {
  * function, for messages. Returns NULL after logging an error if it may not, or if component is NULL.
  */
 struct Instance *enter(void *component, enum FunctionClass function, const char *name);
-
-#endif

@@ -1,6 +1,5 @@
 /* Categories of messages, which the importer can choose. */
-#ifndef LOG_CATEGORIES_H
-#define LOG_CATEGORIES_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -21,5 +20,3 @@ bool log_choose(struct Instance *instance, const char *const *names, size_t coun
 
 /* Copies a message, doubling each of the escaped characters; copy[2 * MESSAGE_LENGTH]. */
 void log_escape(const char *message, const char *escaped, char *copy);
-
-#endif

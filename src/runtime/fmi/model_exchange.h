@@ -2,8 +2,7 @@
  * Functions for importers that integrate; events also in co-simulation of FMI 3.0. At an event modes may change, and a
  * state that has drifted is projected onto the constraints.
  */
-#ifndef MODEL_EXCHANGE_H
-#define MODEL_EXCHANGE_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -46,5 +45,3 @@ enum Status exchange_update(struct Instance *instance, bool *states_changed);
 
 /* Finds the next time event, after an update. False if there is none. */
 bool exchange_next_event(struct Instance *instance, double *time);
-
-#endif

@@ -1,6 +1,5 @@
 /* Adjoint derivatives by the generated weighted_gradient(). Other FMUs do not link this. */
-#ifndef REVERSE_SWEEP_H
-#define REVERSE_SWEEP_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -17,5 +16,3 @@ struct ReverseSweep {
 };
 
 extern const struct ReverseSweep reverse_sweep;
-
-#endif

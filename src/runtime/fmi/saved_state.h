@@ -1,6 +1,5 @@
 /* Saves, restores and serializes the state of an instance. The caller points to a block of instance/snapshot.h. */
-#ifndef SAVED_STATE_H
-#define SAVED_STATE_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -21,5 +20,3 @@ enum Status saved_state_write(struct Instance *instance, const void *state, void
 
 /* Reads a state from bytes[size] into memory as saved_state_get() does; an error if they are damaged. */
 enum Status saved_state_read(struct Instance *instance, const void *bytes, size_t size, void **state);
-
-#endif

@@ -3,8 +3,7 @@
  * FmiComponent and three macros: FMI(name) puts the version's prefix before a name. GetNominalsOfContinuousStates may
  * be called in the class NOMINALS. QUIET_CATEGORIES are logged without debug logging.
  */
-#ifndef SHARED_FUNCTIONS_H
-#define SHARED_FUNCTIONS_H
+#pragma once
 
 #include "fmi/check.h"
 #include "fmi/life_cycle.h"
@@ -90,5 +89,3 @@ FMI_FUNCTION(GetNominalsOfContinuousStates, NOMINALS, exchange_get_nominals(inst
              double nominals[], size_t count)
 FMI_FUNCTION(GetEventIndicators, FUNCTION_GET_CONTINUOUS, exchange_get_event_indicators(instance, indicators, count),
              void *c, double indicators[], size_t count)
-
-#endif

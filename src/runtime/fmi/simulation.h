@@ -1,6 +1,5 @@
 /* Start and end of a simulation. */
-#ifndef SIMULATION_H
-#define SIMULATION_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -19,5 +18,3 @@ enum Status simulation_start(struct Instance *instance);
 
 /* Ends the simulation; the instance can be read or reset afterwards. */
 void simulation_terminate(struct Instance *instance);
-
-#endif

@@ -1,6 +1,5 @@
 /* Gets and sets variables by their value references. Each function logs errors. */
-#ifndef VALUES_H
-#define VALUES_H
+#pragma once
 
 #include "fmi/life_cycle.h"
 
@@ -27,5 +26,3 @@ enum Status values_set_whole(struct Instance *instance, const unsigned *referenc
 /* Sets time derivatives of inputs for the next communication step; all or none. */
 enum Status values_set_input_derivatives(struct Instance *instance, const unsigned *reference, size_t count,
                                          const int *order, const double *value);
-
-#endif

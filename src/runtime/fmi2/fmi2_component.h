@@ -1,6 +1,5 @@
 /* An instance of FMI 2.0: the core, and the caller's callbacks. */
-#ifndef FMI2_COMPONENT_H
-#define FMI2_COMPONENT_H
+#pragma once
 
 #include "fmi2.h"
 #include "instance/instance.h"
@@ -25,5 +24,3 @@ static inline fmi2Status status_of(enum Status status) {
                                   [STATUS_ERROR] = fmi2Error};
   return of[status];
 }
-
-#endif

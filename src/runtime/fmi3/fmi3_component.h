@@ -1,6 +1,5 @@
 /* An instance of FMI 3.0: the core, and the caller's callbacks. */
-#ifndef FMI3_COMPONENT_H
-#define FMI3_COMPONENT_H
+#pragma once
 
 #include "fmi3.h"
 #include "stepping/intermediate.h"
@@ -40,5 +39,3 @@ static inline fmi3Status status_of(enum Status status) {
                                   [STATUS_ERROR] = fmi3Error};
   return of[status];
 }
-
-#endif

@@ -2,8 +2,7 @@
  * Value references of FMI 3.0, of scalars and arrays. They are 1 + the index among the variables, in FMI 2.0 the index:
  * OMSimulator takes the dependencies of FMI 3.0 for indices, which begin with 1, and stops at 0.
  */
-#ifndef FMI3_REFERENCES_H
-#define FMI3_REFERENCES_H
+#pragma once
 
 #include "fmi3/fmi3_component.h"
 
@@ -27,5 +26,3 @@ const unsigned *expand_references(struct FmiComponent *component, enum Workspace
 
 /* Returns workspace for count elements; NULL after logging an error, without memory. */
 void *reserve_workspace(struct FmiComponent *component, enum WorkspaceUse use, size_t count, size_t size);
-
-#endif

@@ -1,5 +1,4 @@
 /* Values of variables of the types in use (sections 2.2.6 and 2.4.7). */
-#include "fmi/check.h"
 #include "fmi/life_cycle.h"
 #include "fmi/values.h"
 #include "fmi3/fmi3_component.h"

@@ -1,6 +1,5 @@
 /* Predicates: the constraint of a closed contact or a sticking friction is active. */
-#ifndef ACTIVE_CONSTRAINTS_H
-#define ACTIVE_CONSTRAINTS_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -13,5 +12,3 @@ static inline bool contact_holds(const struct Instance *instance, size_t contact
 static inline bool friction_holds(const struct Instance *instance, size_t friction) {
   return instance->parameter[lagrangian.switches->frictions[friction].mode] == 0.0;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Event handling: locates events; finds modes, velocities and states after them. Linked only if there are events. */
-#ifndef EVENT_LAWS_H
-#define EVENT_LAWS_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -87,5 +86,3 @@ struct EventLaws {
 };
 
 extern const struct EventLaws event_laws;
-
-#endif

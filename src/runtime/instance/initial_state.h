@@ -2,8 +2,7 @@
  * States and modes whose start values are expressions of parameters. Until the start they follow the
  * parameters, unless they were set themselves.
  */
-#ifndef INITIAL_STATE_H
-#define INITIAL_STATE_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -23,5 +22,3 @@ void initial_state_add_along(struct Instance *instance, double *state, double *p
 
 /* Checks that the start values are finite; an error names the state. */
 enum Status initial_state_check(struct Instance *instance);
-
-#endif

@@ -1,6 +1,5 @@
 /* One instance of the FMU, for all versions of FMI. Instances share no data. */
-#ifndef INSTANCE_H
-#define INSTANCE_H
+#pragma once
 
 #include <stdbool.h>
 #include <stdint.h>
@@ -167,5 +166,3 @@ size_t fmu_state_size(void);
 
 /* Returns a checksum of a block of bytes. */
 uint64_t instance_checksum(const void *block, size_t size);
-
-#endif

@@ -1,6 +1,5 @@
 /* Statuses of calls, and messages to the importer. */
-#ifndef LOG_H
-#define LOG_H
+#pragma once
 
 /* Makes compilers check the arguments of a format. */
 #ifdef __GNUC__
@@ -43,5 +42,3 @@ enum Status reject_call(struct Instance *instance, const char *format, ...) LIKE
 
 /* Logs why a call has no effect, with the name of its function before the message. Returns STATUS_DISCARD. */
 enum Status discard_call(const struct Instance *instance, const char *format, ...) LIKE_PRINTF(2, 3);
-
-#endif

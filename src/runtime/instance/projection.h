@@ -1,6 +1,5 @@
 /* Projection of states onto the constraints (methods/projection.c). FMUs without constraints do not link it. */
-#ifndef PROJECTION_H
-#define PROJECTION_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -51,5 +50,3 @@ static inline size_t projection_work_count(void) {
   return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 3 * lagrangian.state_count + 1 +
          indicator_count(lagrangian.switches);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Workspace of event handling. Blocks stay with the instance, so that steps allocate no memory in the long run. */
-#ifndef SCRATCH_H
-#define SCRATCH_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -29,5 +28,3 @@ struct Instance;
 void *scratch_take(struct Instance *instance, enum ScratchUse use, size_t size);
 void scratch_return(struct Instance *instance, enum ScratchUse use);
 void scratch_free(struct Instance *instance);
-
-#endif

@@ -1,6 +1,5 @@
 /* Serialized states of an instance (snapshot.c). */
-#ifndef SNAPSHOT_H
-#define SNAPSHOT_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -21,5 +20,3 @@ bool snapshot_are_counts(const int64_t *counts, size_t count);
 
 /* Restores a block for which snapshot_fault() returned NULL. */
 void snapshot_restore(struct Instance *instance, const void *block);
-
-#endif

@@ -1,6 +1,5 @@
 /* Interface of the integration methods. Each is a file of methods/; an FMU links the one that its system names. */
-#ifndef SOLVER_H
-#define SOLVER_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -54,5 +53,3 @@ struct Solver {
   /* Computes the states at several times, one row each, to the same bits as interpolate(). NULL if it is no faster. */
   bool (*interpolate_at)(struct Instance *instance, const double *times, size_t count, double *states);
 };
-
-#endif

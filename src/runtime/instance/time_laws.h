@@ -1,6 +1,5 @@
 /* Time events, whose times are known in advance. FMUs without any do not link it. */
-#ifndef TIME_LAWS_H
-#define TIME_LAWS_H
+#pragma once
 
 #include <float.h>
 #include <math.h>
@@ -45,5 +44,3 @@ static inline double next_sample(const struct Instance *instance, double time) {
   }
   return next;
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Bound of a step by the first terms of the Taylor series, for methods that need no more terms. */
-#ifndef FIRST_TERMS_H
-#define FIRST_TERMS_H
+#pragma once
 
 #include "instance/solver.h"
 
@@ -12,5 +11,3 @@ size_t first_terms_rows(void);
  * change (series_limit.h). rows: workspace of first_terms_rows() rows.
  */
 double first_terms_step(struct Instance *instance, Series *rows, double time, const double *state, double bound);
-
-#endif

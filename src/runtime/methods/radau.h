@@ -1,6 +1,5 @@
 /* Interfaces between the files of Radau IIA, and for the choice of the method (auto.c). */
-#ifndef RADAU_H
-#define RADAU_H
+#pragma once
 
 #include "instance/solver.h"
 
@@ -69,5 +68,3 @@ void radau_try_first(struct Instance *instance, double step);
 
 /* Returns the relative tolerance of one step. */
 double radau_tolerance(const struct Instance *instance);
-
-#endif

@@ -1,7 +1,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "methods/radau.h"
 #include "support/lu.h"

@@ -1,6 +1,5 @@
 /* Stiffness: the step that an implicit method could take. */
-#ifndef STIFFNESS_H
-#define STIFFNESS_H
+#pragma once
 
 #include "methods/taylor.h"
 
@@ -15,5 +14,3 @@ double predicted_stiffness(const struct Taylor *taylor, int order, double tolera
  * work: state_count doubles of workspace.
  */
 double stiffness_rate(const double *jacobian, double *work);
-
-#endif

@@ -1,6 +1,5 @@
 /* State of the Taylor method, and the evaluation of its polynomials within a step. */
-#ifndef TAYLOR_H
-#define TAYLOR_H
+#pragma once
 
 #include <math.h>
 
@@ -79,5 +78,3 @@ static inline void taylor_three_changes(const struct Taylor *taylor, size_t i, c
 
 /* Returns the order and the step margin for the tolerance of the simulation. */
 struct SeriesRule taylor_rule(const struct Instance *instance);
-
-#endif

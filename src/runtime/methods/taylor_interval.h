@@ -1,6 +1,5 @@
 /* Step size of the Taylor method. */
-#ifndef TAYLOR_INTERVAL_H
-#define TAYLOR_INTERVAL_H
+#pragma once
 
 #include "methods/taylor.h"
 
@@ -18,5 +17,3 @@ void taylor_measure_scales(struct Taylor *taylor);
  * possible. communication_step: in s, > 0.
  */
 void taylor_choose_interval(struct Instance *instance, struct Taylor *taylor, double communication_step);
-
-#endif

@@ -1,6 +1,5 @@
 /* Order and step of the Taylor method, for one run (taylor_interval.c) and for several at once (src/ensemble). */
-#ifndef TAYLOR_RULE_H
-#define TAYLOR_RULE_H
+#pragma once
 
 #include <math.h>
 #include <stdint.h>
@@ -82,5 +81,3 @@ static inline struct SeriesRule rule_for(double local) {
   }
   return rule;
 }
-
-#endif

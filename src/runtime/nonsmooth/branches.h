@@ -1,6 +1,5 @@
 /* Branches: pieces of piecewise functions, and the last nonzero signs of the expressions of events. */
-#ifndef BRANCHES_H
-#define BRANCHES_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -18,5 +17,3 @@ bool branches_begin(struct Resolution *resolution);
 
 /* Sets the signs from the present values, without events, for reading before the start. */
 void branches_guess(struct Instance *instance);
-
-#endif

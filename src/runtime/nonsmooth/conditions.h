@@ -1,6 +1,5 @@
 /* <event> elements: each happens when its condition becomes true. */
-#ifndef CONDITIONS_H
-#define CONDITIONS_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -12,5 +11,3 @@ void conditions_begin(struct Resolution *resolution);
  * Returns NULL, or the reason why they cannot.
  */
 const char *conditions_happen(struct Resolution *resolution, bool *again);
-
-#endif

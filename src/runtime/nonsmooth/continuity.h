@@ -2,8 +2,7 @@
  * Continuity at switches: a branch that switches must not make positions, velocities or energies jump, since the
  * velocities after such a jump are not determined.
  */
-#ifndef CONTINUITY_H
-#define CONTINUITY_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -39,5 +38,3 @@ extern const double close_share;
 
 /* The reasons if the constraints cannot be fulfilled, and if both pieces of a gap are touched. */
 extern const char constraints_not_kept[], touched_corner[];
-
-#endif

@@ -1,6 +1,5 @@
 /* An event resolution in progress (resolve.c), shared by the files that find modes and the state after an event. */
-#ifndef RESOLUTION_H
-#define RESOLUTION_H
+#pragma once
 
 #include "instance/event_laws.h"
 
@@ -191,5 +190,3 @@ void resolution_restore_modes(struct Resolution *resolution);
 
 /* Returns the rounding error bound of a value, with the rounding of time at its rate. */
 double resolution_error_bound(const struct Resolution *resolution, size_t slot, size_t rate);
-
-#endif

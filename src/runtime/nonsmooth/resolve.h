@@ -1,6 +1,5 @@
 /* Event resolution: the modes and the state after an event (resolve.c). */
-#ifndef RESOLVE_H
-#define RESOLVE_H
+#pragma once
 
 #include "instance/event_laws.h"
 
@@ -14,5 +13,3 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
 
 /* Logs which contact friction jams at a state where the motion ends; false if it jams none. */
 bool resolve_explain(struct Instance *instance, double time, double *state);
-
-#endif

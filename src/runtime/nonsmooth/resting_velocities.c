@@ -24,7 +24,6 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/prescribed_inputs.h"
 #include "evaluation/services.h"
-#include "instance/active_constraints.h"
 
 /* Largest velocity at rest after a projection, by rounding, in units of the scales of velocities. */
 static const double projected_rest = 1e-10;

@@ -1,6 +1,5 @@
 /* Values within a communication step: intermediate update of FMI 3.0. */
-#ifndef INTERMEDIATE_H
-#define INTERMEDIATE_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -32,5 +31,3 @@ void intermediate_observe(struct Instance *instance, struct CommunicationStep *s
  * request leaves the instance in PHASE_ERROR.
  */
 void intermediate_request_inputs(struct Instance *instance, const struct CommunicationStep *step);
-
-#endif

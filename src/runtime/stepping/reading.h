@@ -3,8 +3,7 @@
  * the next step starts. They are computed on a copy, so that reading changes nothing: the start always follows from the
  * values that were set.
  */
-#ifndef READING_H
-#define READING_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -22,5 +21,3 @@ void reading_end(struct Instance *instance);
  * nearby.
  */
 enum Status reading_follow_start(struct Instance *instance, const struct Seed *seed, double *state);
-
-#endif

@@ -1,6 +1,5 @@
 /* Start of the simulation and of each step: satisfies the constraints and finds the modes for the values set. */
-#ifndef START_H
-#define START_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -12,5 +11,3 @@ enum Status start_find(struct Instance *instance);
  * step. False after logging why the step is discarded.
  */
 bool start_step(struct Instance *instance);
-
-#endif

@@ -1,6 +1,5 @@
 /* Communication steps (FMI: DoStep). */
-#ifndef STEPS_H
-#define STEPS_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -9,5 +8,3 @@
  * made; fmu_state->time is then its end.
  */
 enum Status communication_step(struct Instance *instance, double time, double size);
-
-#endif

@@ -3,8 +3,7 @@
  * Elements are real or complex (number.h). lagc chooses the cheaper form for a system, lagrangian.implicit.lu, and an
  * FMU links that one.
  */
-#ifndef LU_H
-#define LU_H
+#pragma once
 
 #include "lagrangian.h"
 #include "support/number.h"
@@ -39,5 +38,3 @@ extern const struct Lu lu_dense;
  * Journal on Matrix Analysis and Applications 13, 1992).
  */
 extern const struct Lu lu_sparse;
-
-#endif

@@ -1,6 +1,5 @@
 /* Arithmetic for code that serves real and complex elements: of width doubles, the real and the imaginary part. */
-#ifndef NUMBER_H
-#define NUMBER_H
+#pragma once
 
 #include <math.h>
 #include <stddef.h>
@@ -51,5 +50,3 @@ static inline void number_invert(size_t width, double *a) {
     a[1] /= -square;
   }
 }
-
-#endif

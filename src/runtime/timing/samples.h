@@ -1,10 +1,7 @@
 /* Samples: events at times base + count * period. */
-#ifndef SAMPLES_H
-#define SAMPLES_H
+#pragma once
 
 #include "instance/instance.h"
 
 /* Sets the modes of the samples, so that the next sample is the first one from the present time on. */
 void samples_start(struct Instance *instance);
-
-#endif

@@ -1,7 +1,6 @@
 #include "algebra/polynomials/polynomial.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"

@@ -18,7 +18,6 @@
 #include "algebra/differentiate.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
-#include "program/expressions/lu_pattern.h"
 
 /* Most nodes below the equations, counted once for each, for formulas: their C has some 30 bytes a node. */
 enum { GRADIENT_LIMIT = 100000 };

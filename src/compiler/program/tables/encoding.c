@@ -8,7 +8,6 @@
  */
 #include "program/tables/encoding.h"
 
-#include "algebra/functions.h"
 #include "base/memory.h"
 #include "program/tables/schedule.h"
 

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "base/paths.h"
+#include "names/similar.h"
 #include "robots/robot_system.h"
 #include "xml/xml.h"
 
@@ -245,10 +246,8 @@ static void report_unused(struct Reader *reader, const struct Override *override
   const char *name = full_name + strlen(overrides->target->prefix);
   reader->scope->prefix = overrides->target->prefix;
   const char *similar = scope_similar_name(reader->scope, name);
-  report_error(reader->diagnostics, line_of(overrides->node), "'%s' has no <%s> '%s'; %s%s%s", overrides->target->file,
-               (const char *)overrides->node->name, name,
-               similar != NULL ? "did you mean '" : "expected one of its names", similar != NULL ? similar : "",
-               similar != NULL ? "'?" : "");
+  report_error(reader->diagnostics, line_of(overrides->node), "'%s' has no <%s> '%s'; %s", overrides->target->file,
+               (const char *)overrides->node->name, name, suggestion(similar, "expected one of its names"));
   source_enter(reader, present);
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "names/similar.h"
 
 /* Returns the variables of a kind that can be set before the start; NULL for other kinds. */
 static const struct VariableList *settable_variables(const struct Model *model, enum SymbolKind kind) {
@@ -52,11 +53,9 @@ static void read_value(struct Reader *reader, xmlNodePtr node, struct Preset *pr
   if (name == NULL || !number_attribute(reader, node, "value", &value)) return;
   const struct Variable *variable = settable_variable(reader, name);
   const char *similar = scope_find(reader->scope, name) == NULL ? scope_similar_name(reader->scope, name) : NULL;
-  if (similar != NULL) report_at(reader, node, "the preset names '%s'; did you mean '%s'?", name, similar);
-  else if (variable == NULL)
-    report_at(reader, node,
-              "the preset names '%s'; expected a parameter with a start, an input, a coordinate, a velocity or a state",
-              name);
+  if (variable == NULL)
+    report_at(reader, node, "the preset names '%s'; %s", name,
+              suggestion(similar, "expected a parameter with a start, an input, a coordinate, a velocity or a state"));
   else if (has_value_for(preset, name))
     report_at(reader, node, "the preset names '%s' twice; expected one value", name);
   else {

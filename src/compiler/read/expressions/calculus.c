@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "algebra/differentiate.h"
-#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/expressions/integration.h"
 #include "read/expressions/parser.h"

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "algebra/cone.h"
-#include "algebra/functions.h"
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "model/switches.h"

@@ -16,7 +16,7 @@ static bool are_shown(const struct Reader *reader) {
 }
 
 /* Returns "did you mean 'theta'?" for a similar name, or the expected kind of name. */
-static char *similar_coordinate(const struct Reader *reader, const char *name) {
+static const char *similar_coordinate(const struct Reader *reader, const char *name) {
   const struct Model *model = reader->model;
   struct SimilarName similar = {.wanted = name};
   for (size_t i = 0; i < model->coordinates.count && are_shown(reader); i++) {
@@ -25,14 +25,13 @@ static char *similar_coordinate(const struct Reader *reader, const char *name) {
       return format_text("did you mean '%s', whose velocity it is?", known);
     similar_consider(&similar, known);
   }
-  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best)
-                              : copy_text("expected the name of a <coordinate>");
+  return suggestion(similar.best, "expected the name of a <coordinate>");
 }
 
-static char *similar_body(const struct Reader *reader, const char *name) {
+static const char *similar_body(const struct Reader *reader, const char *name) {
   struct SimilarName similar = {.wanted = name};
   if (are_shown(reader)) similar_consider_all(&similar, reader->bodies);
-  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : copy_text("expected the name of one");
+  return suggestion(similar.best, "expected the name of one");
 }
 
 const struct Symbol *find_coordinate(const struct Reader *reader, const char *name) {
@@ -47,8 +46,8 @@ static void add_generalized_force(struct Reader *reader, xmlNodePtr node, const 
   struct Model *model = reader->model;
   const struct Symbol *symbol = find_coordinate(reader, coordinate);
   if (symbol == NULL) {
-    char *meant = similar_coordinate(reader, coordinate);
-    report_at(reader, node, "there is no coordinate '%s' for this force; %s", coordinate, meant);
+    report_at(reader, node, "there is no coordinate '%s' for this force; %s", coordinate,
+              similar_coordinate(reader, coordinate));
     return;
   }
   int index = symbol->index;
@@ -71,8 +70,8 @@ static void append_point_force(struct Model *model, Node position, Node force) {
 }
 
 static void report_unknown_body(struct Reader *reader, xmlNodePtr node, const char *name, const char *what) {
-  char *meant = similar_body(reader, name);
-  report_at(reader, node, "there is no %s '%s' for this %s; %s", what, name, (const char *)node->name, meant);
+  report_at(reader, node, "there is no %s '%s' for this %s; %s", what, name, (const char *)node->name,
+            similar_body(reader, name));
 }
 
 /* Reads the components of a force or torque along the axes of the frame that attribute `in` names. */

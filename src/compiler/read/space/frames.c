@@ -128,8 +128,8 @@ static void report_unknown_frame(struct Reader *reader, xmlNodePtr node, const c
   struct SimilarName similar = {.wanted = name};
   if (definitions_are_waiting(reader->definitions) || is_collected(reader, true, name)) return;
   similar_consider_all(&similar, reader->frames);
-  if (similar.best != NULL) report_at(reader, node, "there is no frame '%s'; did you mean '%s'?", name, similar.best);
-  else report_at(reader, node, "there is no frame '%s'; expected the name of a <frame>", name);
+  report_at(reader, node, "there is no frame '%s'; %s", name,
+            suggestion(similar.best, "expected the name of a <frame>"));
 }
 
 const struct ReferenceFrame *find_frame(const struct Reader *reader, const char *name) {

@@ -1,20 +1,18 @@
 #include "read/space/joint_ends.h"
 
-#include "algebra/simplify.h"
 #include "base/memory.h"
 #include "names/similar.h"
 #include "read/space/bodies.h"
 #include "read/space/frames.h"
 
 /* Returns a remedy for an unknown name: the most similar one, or the expected kinds. */
-static const char *suggestion(const struct Reader *reader, const char *name) {
+static const char *similar_end(const struct Reader *reader, const char *name) {
   struct SimilarName similar = {.wanted = name};
   similar_consider_all(&similar, reader->bodies);
   similar_consider_all(&similar, reader->spatial_points);
   for (size_t i = 1; i < reader->model->mechanism.frame_count; i++)
     similar_consider(&similar, reader->model->mechanism.frames[i].name);
-  return similar.best != NULL ? format_text("did you mean '%s'?", similar.best)
-                              : "expected a <frame>, <body>, <point> or <particle>, or base";
+  return suggestion(similar.best, "expected a <frame>, <body>, <point> or <particle>, or base");
 }
 
 /* Returns the full name in an attribute; NULL after reporting an error. */
@@ -36,7 +34,7 @@ bool read_displaced_joint_end(struct Reader *reader, xmlNodePtr node, const char
     for (int axis = 0; axis < 3; axis++) end->position.along[axis] = body->displaced[axis];
   } else {
     report_at(reader, node, "there is nothing named '%s' for this <%s>; %s", attribute(node, name),
-              (const char *)node->name, suggestion(reader, full_name));
+              (const char *)node->name, similar_end(reader, full_name));
     return false;
   }
   end->rotation = frame->pose.rotation;

@@ -3,7 +3,6 @@
 #include <math.h>
 
 #include "algebra/simplify.h"
-#include "names/definitions.h"
 
 enum { X, Y, Z };
 

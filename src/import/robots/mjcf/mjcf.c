@@ -47,12 +47,11 @@ static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
 
 static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const units[] = {"degree", "radian", NULL}, *const where[] = {"auto", "true", "false", NULL};
-  static const char *const rejected[] = {"boundmass", "boundinertia", "balanceinertia"};
   if (has_attribute(node, "angle")) mjcf->angle = mjcf_word(mjcf, node, "angle", units) == 1 ? 1 : M_PI / 180;
   if (has_attribute(node, "autolimits")) mjcf->has_automatic_limits = attribute_is(node, "autolimits", "true");
   if (has_attribute(node, "inertiafromgeom"))
     mjcf->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
-  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
+  mjcf_reject(mjcf, node, "boundmass boundinertia balanceinertia");
   mjcf->total_mass = mjcf_number(mjcf, node, "settotalmass", mjcf->total_mass);
   mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
@@ -74,8 +73,7 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
                                       "limit",   "equality", "frictionloss", "constraint"};
   double groups[ACTUATOR_GROUPS];
   mjcf_numbers(mjcf, node, "gravity", 3, 3, mjcf->file.robot->gravity);
-  mjcf_reject(mjcf, node, "density");
-  mjcf_reject(mjcf, node, "viscosity");
+  mjcf_reject(mjcf, node, "density viscosity");
   size_t count = mjcf_numbers(mjcf, node, "actuatorgroupdisable", 1, ACTUATOR_GROUPS, groups);
   for (size_t i = 0; i < count; i++)
     if (groups[i] >= 0 && groups[i] < ACTUATOR_GROUPS) mjcf->is_off[(size_t)groups[i]] = true;
@@ -120,8 +118,7 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *j
 
 /* Reads a joint with several coordinates: isotropic damping and armature. Reports features of single coordinates. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
-  static const char *const rejected[] = {"stiffness", "springdamper", "actuatorfrcrange"};
-  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
+  mjcf_reject(mjcf, node, "stiffness springdamper actuatorfrcrange");
   joint->damping = mjcf_number_not_negative(mjcf, node, "damping", 0);
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   if (joint->type == FLOATING) joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);

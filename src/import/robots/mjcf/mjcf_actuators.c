@@ -192,7 +192,6 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
 }
 
 void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const rejected[] = {"actdim", "delay", "damping", "armature", "refsite"};
   static const char *const places[] = {"tendon", "joint", "jointinparent", "site"};
   struct Robot *robot = mjcf->file.robot;
   size_t kind = kind_of(node);
@@ -226,6 +225,6 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
     memset(actuator.bias, 0, sizeof actuator.bias);
     actuator.force[0] = actuator.force[1] = NAN;
   }
-  for (size_t i = 0; i < sizeof rejected / sizeof *rejected; i++) mjcf_reject(mjcf, node, rejected[i]);
+  mjcf_reject(mjcf, node, "actdim delay damping armature refsite");
   APPEND(robot->actuators, robot->actuator_count, actuator);
 }

@@ -1,6 +1,5 @@
 #include "robots/mjcf/mjcf_equality.h"
 
-#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"

@@ -20,9 +20,8 @@ static xmlNodePtr find_key(struct Mjcf *mjcf) {
       if (attribute_is(key, "name", name)) return key;
       if (has_attribute(key, "name")) similar_consider(&similar, attribute(key, "name"));
     }
-  report_error(mjcf->file.diagnostics, mjcf->file.robot->line, "there is no <key> '%s'; %s%s%s", name,
-               similar.best != NULL ? "did you mean '" : "expected the name of one in a <keyframe> of the file",
-               similar.best != NULL ? similar.best : "", similar.best != NULL ? "'?" : "");
+  report_error(mjcf->file.diagnostics, mjcf->file.robot->line, "there is no <key> '%s'; %s", name,
+               suggestion(similar.best, "expected the name of one in a <keyframe> of the file"));
   return NULL;
 }
 

@@ -124,8 +124,7 @@ static void read_mesh(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mesh
   static const char *const kinds[] = {"legacy", "exact", "convex", "shell", NULL};
   for (int i = 0; i < 3; i++) mesh->scale[i] = 1;
   mjcf_numbers(mjcf, asset, "scale", 3, 3, mesh->scale);
-  mjcf_reject(mjcf, asset, "refpos");
-  mjcf_reject(mjcf, asset, "refquat");
+  mjcf_reject(mjcf, asset, "refpos refquat");
   size_t kind = mjcf_word(mjcf, asset, "inertia", kinds);
   mesh->path = find_file(mjcf, asset, mesh);
   if (mesh->path == NULL) return;

@@ -144,6 +144,6 @@ const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char 
     similar_consider(&similar, robot->tendons[i].name);
   }
   mjcf_error(mjcf, node, "there is no tendon '%s' for a <%s>; %s", name, (const char *)node->name,
-             similar.best != NULL ? format_text("did you mean '%s'?", similar.best) : "expected an existing name");
+             suggestion(similar.best, "expected an existing name"));
   return NULL;
 }

@@ -291,9 +291,11 @@ void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy)
              remedy);
 }
 
-void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
-  const char *text = mjcf_text(mjcf, node, name);
-  if (text == NULL || requests_nothing(text)) return;
-  mjcf_error(mjcf, node, "%s=\"%.60s\" of <%s> is not read, and would change the motion; remove it", name, text,
-             (const char *)node->name);
+void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *names) {
+  for (const char *name = next_name(&names); name != NULL; name = next_name(&names)) {
+    const char *text = mjcf_text(mjcf, node, name);
+    if (text == NULL || requests_nothing(text)) continue;
+    mjcf_error(mjcf, node, "%s=\"%.60s\" of <%s> is not read, and would change the motion; remove it", name, text,
+               (const char *)node->name);
+  }
 }

@@ -101,5 +101,5 @@ void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const ch
 /* Reports an element that is not supported and would change the motion. remedy: completes "expected ...". */
 void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy);
 
-/* Reports an attribute that is not supported and would change the motion, unless it is 0, false, none or missing. */
-void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *name);
+/* Reports attributes that are not supported and would change the motion, unless they are 0, false, none or missing. */
+void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *names);

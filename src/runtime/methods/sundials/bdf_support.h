@@ -1,6 +1,5 @@
 /* Backward differentiation formulas, for dense and sparse Jacobian matrices. */
-#ifndef BDF_SUPPORT_H
-#define BDF_SUPPORT_H
+#pragma once
 
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
@@ -33,5 +32,3 @@ bool bdf_configure(struct Instance *instance);
 bool bdf_restart(struct Instance *instance, const double *state, const struct CommunicationStep *step);
 const char *bdf_advance(struct Instance *instance, const struct CommunicationStep *step);
 bool bdf_interpolate(struct Instance *instance, double time, double *state);
-
-#endif

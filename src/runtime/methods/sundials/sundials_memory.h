@@ -3,8 +3,7 @@
  * its calls of malloc and the like to this file (--wrap), which uses the importer's functions. If memory is missing,
  * longjmp leaves the library, and all that it has allocated is freed.
  */
-#ifndef SUNDIALS_MEMORY_H
-#define SUNDIALS_MEMORY_H
+#pragma once
 
 #include "instance/instance.h"
 
@@ -27,5 +26,3 @@ void *sundials_allocate(size_t count, size_t size);
 
 /* Frees solver_memory and all that was allocated for it. */
 void sundials_destroy(struct Instance *instance);
-
-#endif

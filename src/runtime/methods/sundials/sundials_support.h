@@ -1,6 +1,5 @@
 /* Parts that the solvers of SUNDIALS share. */
-#ifndef SUNDIALS_SUPPORT_H
-#define SUNDIALS_SUPPORT_H
+#pragma once
 
 #include <nvector/nvector_serial.h>
 #include <sundials/sundials_context.h>
@@ -51,5 +50,3 @@ bool sundials_tiny_step(struct Instance *instance, const struct CommunicationSte
 
 /* Ignores errors, as the handler of SUNDIALS: the callers report them by the returned flags. */
 void sundials_ignore_error(int code, const char *module, const char *function, char *message, void *data);
-
-#endif

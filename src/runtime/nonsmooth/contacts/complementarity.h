@@ -1,6 +1,5 @@
 /* Linear complementarity problems: w = M z + q with w >= 0, z >= 0 and w^T z = 0. */
-#ifndef COMPLEMENTARITY_H
-#define COMPLEMENTARITY_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -14,5 +13,3 @@ size_t complementarity_work_count(size_t n);
  * the rows. False, with z = 0, if the path ends without a solution.
  */
 bool complementarity_solve(size_t n, const double *matrix, const double *q, double *z, double *work);
-
-#endif

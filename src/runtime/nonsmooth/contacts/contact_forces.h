@@ -1,6 +1,5 @@
 /* Existence and uniqueness of the forces of contacts at rest, with the frictions that slide on them. */
-#ifndef CONTACT_FORCES_H
-#define CONTACT_FORCES_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -22,5 +21,3 @@ void contact_forces_report_fixed(const struct Resolution *resolution, size_t con
 
 /* Logs a sliding contact that friction jams at the end of the motion; false if there is none. */
 bool contact_forces_explain(struct Resolution *resolution);
-
-#endif

@@ -2,8 +2,7 @@
  * Impulses of contacts and frictions: their effects on the velocities, and on one another by the Delassus matrix
  * W = J M^-1 J^T. Contacts come first, then the frictions that rest on them.
  */
-#ifndef CONTACT_IMPULSES_H
-#define CONTACT_IMPULSES_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 #include "instance/active_constraints.h"
@@ -92,5 +91,3 @@ bool contact_is_at_rest(const struct Resolution *resolution, size_t contact);
  * height or duration.
  */
 bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate);
-
-#endif

@@ -1,6 +1,5 @@
 /* Solution of small linear systems. */
-#ifndef ELIMINATION_H
-#define ELIMINATION_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -11,5 +10,3 @@
  * pivot counts as 0.
  */
 bool solve_by_elimination(size_t n, double *rows);
-
-#endif

@@ -1,6 +1,5 @@
 /* Dry friction: stick and slip, for struct FrictionLaws. Frictions in planes are only reported and checked here. */
-#ifndef FRICTIONS_H
-#define FRICTIONS_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -35,5 +34,3 @@ extern const double sticking_rate_share;
 
 /* Switches of one friction in an event resolution before they count as endless. */
 enum { FRICTION_FLIP_LIMIT = 500 };
-
-#endif

@@ -1,6 +1,5 @@
 /* Other outcomes of an impact, with frictions along lines. */
-#ifndef IMPACT_OUTCOMES_H
-#define IMPACT_OUTCOMES_H
+#pragma once
 
 #include "nonsmooth/contacts/contact_impulses.h"
 
@@ -11,5 +10,3 @@
  */
 bool impact_has_others(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                        const double *impulse);
-
-#endif

@@ -1,6 +1,5 @@
 /* Impacts: the impulses of contacts that are hit at the same time, and of the frictions on them. */
-#ifndef IMPACTS_H
-#define IMPACTS_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -14,5 +13,3 @@ struct ContactImpulses;
 
 /* True if impulses cause another motion than found, beyond rounding, and gain no energy. */
 bool is_other_outcome(const struct ContactImpulses *impulses, const double *impulse, const double *found);
-
-#endif

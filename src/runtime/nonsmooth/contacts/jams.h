@@ -1,6 +1,5 @@
 /* Modes of frictions at rest whose forces follow from constraint forces, by Coulomb's law. */
-#ifndef JAMS_H
-#define JAMS_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -10,5 +9,3 @@
  * depends on a force. Also returns false if there are several motions, which it logs.
  */
 bool jams_resolve(struct Resolution *resolution);
-
-#endif

@@ -1,6 +1,5 @@
 /* Contacts that touch at rest share the load. */
-#ifndef LOAD_SHARES_H
-#define LOAD_SHARES_H
+#pragma once
 
 #include "nonsmooth/resolution.h"
 
@@ -10,5 +9,3 @@
  * cannot continue.
  */
 const char *contacts_share_load(struct Resolution *resolution, bool *again);
-
-#endif

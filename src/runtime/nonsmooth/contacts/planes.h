@@ -1,6 +1,5 @@
 /* Sliding speeds of frictions, along a line or in a plane. */
-#ifndef PLANES_H
-#define PLANES_H
+#pragma once
 
 #include <math.h>
 
@@ -29,5 +28,3 @@ static inline double sliding_speed(const struct Resolution *resolution, size_t f
     return speed_in_plane(resolution, resolution->switches->planes[plane].along);
   return fabs(resolution->value[friction_slot(resolution->switches, friction, FRICTION_VELOCITY)]);
 }
-
-#endif

@@ -1,6 +1,5 @@
 /* Forces F of contacts at rest: accelerations a = free + S F with a >= 0, F >= 0 and F^T a = 0. */
-#ifndef RESTING_FORCES_H
-#define RESTING_FORCES_H
+#pragma once
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -39,5 +38,3 @@ double largest_free_acceleration(const struct RestingForces *resting);
  * sufficient condition decides on uniqueness.
  */
 enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved);
-
-#endif

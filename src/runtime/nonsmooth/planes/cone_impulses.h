@@ -1,6 +1,5 @@
 /* Impulses of contacts with Coulomb friction in planes. */
-#ifndef CONE_IMPULSES_H
-#define CONE_IMPULSES_H
+#pragma once
 
 #include "nonsmooth/contacts/contact_impulses.h"
 
@@ -21,5 +20,3 @@ bool cone_forces_find(const struct Resolution *resolution, const struct ContactI
 /* Implements has_other_impulses. It searches from several starts, and so may miss some. */
 bool cone_impulses_have_others(const struct Resolution *resolution, const struct ContactImpulses *impulses,
                                const double *rate, const double *impulse);
-
-#endif

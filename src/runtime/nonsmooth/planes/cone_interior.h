@@ -1,6 +1,5 @@
 /* Interior-point method for impulses, or forces, with Coulomb friction cones. */
-#ifndef CONE_INTERIOR_H
-#define CONE_INTERIOR_H
+#pragma once
 
 #include "nonsmooth/planes/cones.h"
 
@@ -13,5 +12,3 @@ size_t cone_interior_work_count(size_t n);
  * impulses found, relative to the largest one.
  */
 double cone_interior(struct Cones *cones, double enough, bool is_centered, double *work);
-
-#endif

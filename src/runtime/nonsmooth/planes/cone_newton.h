@@ -1,6 +1,5 @@
 /* Semismooth Newton method for impulses with Coulomb friction cones. */
-#ifndef CONE_NEWTON_H
-#define CONE_NEWTON_H
+#pragma once
 
 #include "nonsmooth/planes/cones.h"
 
@@ -9,5 +8,3 @@ size_t cone_newton_work_count(size_t n);
 
 /* Improves the impulses while each step reduces the residual by at least 10 %. Returns the residual, as a rate. */
 double cone_newton(struct Cones *cones, double *work);
-
-#endif

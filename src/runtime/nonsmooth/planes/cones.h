@@ -1,6 +1,5 @@
 /* Impulses of an impact with Coulomb friction cones: the problem of cone_impulses.c. */
-#ifndef CONES_H
-#define CONES_H
+#pragma once
 
 #include "nonsmooth/contacts/contact_impulses.h"
 
@@ -34,5 +33,3 @@ double cones_largest(const struct Cones *cones);
 
 /* Returns a residual relative to the largest impulse; 0 if it is a rounding error of the rates. */
 double cones_relative_miss(const struct Cones *cones, double miss);
-
-#endif

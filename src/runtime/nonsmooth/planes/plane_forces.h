@@ -1,6 +1,5 @@
 /* Frictions in planes at rest, and the contacts below them, whose forces depend on each other. */
-#ifndef PLANE_FORCES_H
-#define PLANE_FORCES_H
+#pragma once
 
 #include "nonsmooth/planes/plane_state.h"
 
@@ -9,5 +8,3 @@
  * sets their modes. False if there are no such forces, accelerations do not exist, or memory is missing.
  */
 bool plane_forces_resolve(struct Resolution *resolution);
-
-#endif

@@ -1,6 +1,5 @@
 /* Frictions in planes at rest: which stick, which begin to slide, and along which directions. */
-#ifndef PLANE_RESTS_H
-#define PLANE_RESTS_H
+#pragma once
 
 #include "nonsmooth/planes/plane_state.h"
 
@@ -15,5 +14,3 @@ bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneSt
  * with which all conditions hold. False, without a message, if none are found, or accelerations do not exist.
  */
 bool plane_rests_find(struct Resolution *resolution);
-
-#endif

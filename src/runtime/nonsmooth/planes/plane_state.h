@@ -1,6 +1,5 @@
 /* State of a friction in a plane at an event: speed, stiction and mode. */
-#ifndef PLANE_STATE_H
-#define PLANE_STATE_H
+#pragma once
 
 #include "nonsmooth/contacts/planes.h"
 
@@ -84,5 +83,3 @@ void plane_free(struct Resolution *resolution, const struct PlaneState *state);
  * direction of 0 keeps the last one.
  */
 void plane_slip(struct Resolution *resolution, const struct PlaneState *state, const double slip_direction[2]);
-
-#endif
