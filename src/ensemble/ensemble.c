@@ -2,7 +2,6 @@
 
 #include "lane_events.h"
 #include "lane_steps.h"
-#include "lane_values.h"
 
 /* The runs that are in the lanes, and those to come. */
 struct LaneGroup {
@@ -101,6 +100,62 @@ static Mask find_sampled(const struct LaneGroup *group, Lanes *time) {
   return is_reached;
 }
 
+/* True if a run can vary, or sample, the variable. */
+static bool can_vary(const struct ScalarVariable *variable) {
+  bool is_start = variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_INPUT;
+  return variable->type == TYPE_REAL && (is_start || variable->kind == VARIABLE_PARAMETER);
+}
+
+static bool can_report(const struct ScalarVariable *variable) {
+  return variable->type == TYPE_REAL && (variable->kind == VARIABLE_STATE || variable->kind == VARIABLE_RESULT);
+}
+
+static Lanes value_of(const struct ScalarVariable *variable, const struct Point *point, const Lanes *acceleration) {
+  if (variable->kind == VARIABLE_STATE) return point->state[variable->index];
+  return lagrangian.results.result(point, acceleration, variable->index);
+}
+
+static bool asks_for_accelerations(const struct Ensemble *ensemble) {
+  for (size_t i = 0; i < ensemble->recorded_count; i++) {
+    const struct ScalarVariable *variable = &lagrangian.variables[ensemble->recorded[i]];
+    if (variable->kind == VARIABLE_RESULT && lagrangian.results.uses_acceleration[variable->index]) return true;
+  }
+  return false;
+}
+
+/* Returns the accelerations for result(), at steps->state; *is_lost: lanes without. */
+static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *is_lost) {
+  struct LaneSteps *steps = events->steps;
+  if (lagrangian.constraints.accelerations != NULL) {
+    *is_lost = lane_events_accelerations(events, time);
+    return events->acceleration;
+  }
+  struct Point point = lane_steps_point(steps, time);
+  failed_lanes = (Mask){0};
+  lagrangian.derivatives(&point, steps->rate);
+  *is_lost = failed_lanes;
+  return steps->rate + lagrangian.coordinate_count;
+}
+
+/*
+ * Samples the recorded variables at a time of each lane and at steps->state, in the reached lanes. run, slot: of each
+ * lane, the run and the index of the time. Returns the lanes in which a value is not finite.
+ */
+static Mask report_values(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
+                          const size_t *run, const size_t *slot) {
+  struct Point point = lane_steps_point(events->steps, time);
+  Mask is_lost = {0};
+  const Lanes *acceleration = asks_for_accelerations(ensemble) ? accelerations(events, time, &is_lost) : NULL;
+  for (size_t i = 0; i < ensemble->recorded_count; i++) {
+    Lanes value = value_of(&lagrangian.variables[ensemble->recorded[i]], &point, acceleration);
+    is_lost |= ~lanes_are_finite(value);
+    for (int j = 0; j < LANES; j++)
+      if (is_reached[j])
+        ensemble->values[(run[j] * ensemble->time_count + slot[j]) * ensemble->recorded_count + i] = value[j];
+  }
+  return is_lost & is_reached;
+}
+
 /* Samples values at all times within the steps. A run ends at the last time. */
 static void report_samples(struct LaneGroup *group) {
   const struct Ensemble *ensemble = group->ensemble;
@@ -110,7 +165,7 @@ static void report_samples(struct LaneGroup *group) {
     if (!any_lane(is_reached)) return;
     lane_steps_take_state(&group->steps, time);
     Mask is_lost = lane_events_project(&group->events, time, is_reached);
-    is_lost |= lane_values_report(ensemble, &group->events, time, is_reached, group->run, group->time);
+    is_lost |= report_values(ensemble, &group->events, time, is_reached, group->run, group->time);
     for (int i = 0; i < LANES; i++)
       if (is_reached[i] && ++group->time[i] == ensemble->time_count) is_over[i] = -1;
     release_lanes(group, is_lost | lane_events_check_end(&group->events, time, is_over));
@@ -121,9 +176,9 @@ static void report_samples(struct LaneGroup *group) {
 bool ensemble_supports(const struct Ensemble *ensemble) {
   bool is_supported = lagrangian.steps.max_steps == 0 && lagrangian.constraints.prescribed_input_count == 0;
   for (size_t i = 0; i < ensemble->varied_count; i++)
-    is_supported &= lane_values_can_vary(&lagrangian.variables[ensemble->varied[i]]);
+    is_supported &= can_vary(&lagrangian.variables[ensemble->varied[i]]);
   for (size_t i = 0; i < ensemble->recorded_count; i++)
-    is_supported &= lane_values_can_report(&lagrangian.variables[ensemble->recorded[i]]);
+    is_supported &= can_report(&lagrangian.variables[ensemble->recorded[i]]);
   return is_supported;
 }
 

@@ -5,10 +5,12 @@
  */
 #include "assembly.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "algebra/functions.h"
 #include "base/memory.h"
+#include "bounded_functions.h"
 #include "nonsmooth/resting_velocities.h"
 #include "nonsmooth/resolution.h"
 #include "instance/event_laws.h"
@@ -16,11 +18,11 @@
 #include "instance/solver.h"
 #include "instance/time_laws.h"
 #include "interpreter.h"
-#include "library_functions.h"
 #include "nonsymmetric.h"
 #include "program/metadata/block_metadata.h"
 #include "program/metadata/metadata.h"
 #include "program/metadata/switch_metadata.h"
+#include "random_numbers.h"
 #include "saddle.h"
 #include "support/lu.h"
 
@@ -60,6 +62,54 @@ static void add_series(const struct Encoding *encoding, enum FunctionName first,
   interpreter.order[order] = code_of(encoding, series->order);
 }
 
+typedef double FunctionOfOne(double);
+typedef double FunctionOfTwo(double, double);
+
+/* The functions that generated code calls, by their names in C: all of algebra/functions.c. */
+#define OF_ONE(function)                                                                                               \
+  { #function, function, NULL }
+#define OF_TWO(function)                                                                                               \
+  { #function, NULL, function }
+static const struct LibraryFunction {
+  const char *name;
+  FunctionOfOne *of_one;
+  FunctionOfTwo *of_two;
+} library[] = {OF_ONE(sin),
+               OF_ONE(cos),
+               OF_ONE(tan),
+               OF_ONE(asin),
+               OF_ONE(acos),
+               OF_ONE(atan),
+               OF_ONE(sinh),
+               OF_ONE(cosh),
+               OF_ONE(tanh),
+               OF_ONE(asinh),
+               OF_ONE(exp),
+               OF_ONE(acosh),
+               OF_ONE(atanh),
+               OF_ONE(fabs),
+               OF_ONE(log),
+               OF_ONE(floor),
+               OF_ONE(logistic),
+               OF_ONE(softplus),
+               OF_ONE(sech),
+               OF_ONE(log_cosh),
+               OF_ONE(capped_exp),
+               OF_ONE(capped_exp_slope),
+               OF_TWO(pow),
+               OF_TWO(atan2),
+               OF_TWO(fmin),
+               OF_TWO(fmax),
+               OF_TWO(random_uniform),
+               OF_TWO(random_gauss)};
+
+/* Returns the function of this name, which exists. */
+static const struct LibraryFunction *function_named(const char *name) {
+  const struct LibraryFunction *function = library;
+  while (strcmp(function->name, name) != 0) function++;
+  return function;
+}
+
 static const struct BlockTable *blocks_of(const struct Program *program) {
   struct BlockTable *tables = allocate(program->blocks.count, sizeof *tables);
   for (size_t i = 0; i < program->blocks.count; i++) {
@@ -95,8 +145,8 @@ static void add_shared_tables(const struct Encoding *encoding) {
     numbers[i] = graph_value(program->model->graph, encoding->numbers.nodes[i]);
   for (enum Operation function = 0; function < OPERATION_COUNT; function++) {
     size_t slot = encoding->function[function];
-    if (slot > 0 && operation_arity(function) == 1) of_one[slot - 1] = function_of_one(function_in_c(function));
-    if (slot > 0 && operation_arity(function) == 2) of_two[slot - 1] = function_of_two(function_in_c(function));
+    if (slot > 0 && operation_arity(function) == 1) of_one[slot - 1] = function_named(function_in_c(function))->of_one;
+    if (slot > 0 && operation_arity(function) == 2) of_two[slot - 1] = function_named(function_in_c(function))->of_two;
   }
   interpreter.tables = (struct InstructionTables){numbers,
                                                   of_one,

@@ -5,6 +5,7 @@
 #include "base/memory.h"
 #include "model/kinematics.h"
 #include "robots/description/robot_file.h"
+#include "robots/description/shape_pairs.h"
 #include "robots/robot_tree.h"
 
 static const char ground[] = "ground";
@@ -28,7 +29,8 @@ static void place_element(xmlNodePtr shape, const struct Placement *placement) {
   }
 }
 
-double shape_friction(double friction) {
+/* Returns a coefficient of friction, or the usual one if it is NAN. */
+static double shape_friction(double friction) {
   return isnan(friction) ? usual_friction : friction;
 }
 
@@ -55,8 +57,9 @@ static double common_friction(const struct Robot *robot, const struct RobotOptio
   return common;
 }
 
-void write_contact_parameters(const struct Writer *writer, const struct Robot *robot, const char *prefix,
-                              double friction) {
+/* Writes PREFIX_stiffness, PREFIX_damping and PREFIX_friction. friction: NAN where contacts differ. */
+static void write_contact_parameters(const struct Writer *writer, const struct Robot *robot, const char *prefix,
+                                     double friction) {
   double mass = 0.0;
   for (size_t i = 0; i < robot->link_count; i++) mass += robot->links[i]->body.mass;
   double gravity = robot_gravity(robot);
@@ -80,8 +83,9 @@ void write_ground(struct Writer *writer, const struct Robot *robot) {
   if (robot->ground != NULL) place_element(plane, &robot->ground->placement);
 }
 
-void write_shape_contact(const struct Writer *writer, char *name, char *const shapes[2], const char *prefix,
-                         double friction) {
+/* Writes a compliant contact with these parameters. friction: its own coefficient; NAN for that of the parameter. */
+static void write_shape_contact(const struct Writer *writer, char *name, char *const shapes[2], const char *prefix,
+                                double friction) {
   write_element(writer, "contact", "name", name, "between", shapes[0], "and", shapes[1], "stiffness",
                 format_text("%s_stiffness", prefix), "damping", format_text("%s_damping", prefix), "friction",
                 isnan(friction) ? format_text("%s_friction", prefix)
@@ -124,4 +128,58 @@ void write_shapes(struct Writer *writer, const struct RobotLink *link, bool move
   }
   for (size_t i = 0; i < link->visual_count; i++)
     write_shape(writer, link, &link->visuals[i], format_text("%s_visual%zu", link->symbol, i + 1));
+}
+
+/* Returns the link that carries the parent of this carrier; NULL for the root. */
+static const struct RobotLink *carrier_before(const struct RobotLink *carrier) {
+  return carrier->joint != NULL ? carrier->joint->parent->carrier : NULL;
+}
+
+/* True if the shapes of two links may meet. Shapes of links that a joint connects often overlap, and touch nothing. */
+static bool may_meet(const struct RobotLink *first, const struct RobotLink *second) {
+  const struct RobotLink *a = first->carrier, *b = second->carrier;
+  return a != b && carrier_before(a) != b && carrier_before(b) != a;
+}
+
+void find_pairs(struct Robot *robot, const struct RobotOptions *options, const struct Diagnostics *diagnostics) {
+  struct ShapePair other = {.links = {NULL}};
+  size_t others = 0;
+  for (struct RobotLink *first = options->has_self ? robot->root : NULL; first != NULL; first = first->next)
+    for (struct RobotLink *second = first->next; second != NULL; second = second->next)
+      for (size_t i = 0; i < first->collision_count && may_meet(first, second); i++)
+        for (size_t j = 0; j < second->collision_count; j++) {
+          struct ShapePair pair = {{first, second}, {i, j}, NAN, first->collisions[i].line};
+          if (shapes_can_touch(&first->collisions[i], &second->collisions[j])) add_shape_pair(robot, &pair);
+          else if (others++ == 0) other = pair;
+        }
+  if (others == 0) return;
+  const char *types[2];
+  for (int i = 0; i < 2; i++) types[i] = other.links[i]->collisions[other.indices[i]].type;
+  report_warning(diagnostics, other.line,
+                 "%zu pair%s of shapes do not touch, such as the %s of the link '%s' and the %s of '%s'; expected a "
+                 "sphere and another shape, or two capsules",
+                 others, others > 1 ? "s" : "", types[0], other.links[0]->name, types[1], other.links[1]->name);
+}
+
+/* Returns the coefficient that all pairs have; NAN if they differ. */
+static double friction_of_pairs(const struct Robot *robot) {
+  double common = shape_friction(robot->pairs[0].friction);
+  for (size_t i = 1; i < robot->pair_count; i++)
+    if (shape_friction(robot->pairs[i].friction) != common) return NAN;
+  return common;
+}
+
+void write_pairs(struct Writer *writer, const struct Robot *robot) {
+  if (robot->pair_count == 0) return;
+  double friction = friction_of_pairs(robot);
+  writer->line = robot->line;
+  write_contact_parameters(writer, robot, "self", friction);
+  for (size_t i = 0; i < robot->pair_count; i++) {
+    const struct ShapePair *pair = &robot->pairs[i];
+    char *names[2];
+    for (int k = 0; k < 2; k++) names[k] = format_text("%s_collision%zu", pair->links[k]->symbol, pair->indices[k] + 1);
+    writer->line = pair->line;
+    write_shape_contact(writer, format_text("%s_on_%s", names[0], names[1]), names, "self",
+                        isnan(friction) ? pair->friction : NAN);
+  }
 }

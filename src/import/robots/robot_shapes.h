@@ -1,18 +1,8 @@
-/* Converts <collision>s and <visual>s of a robot to shapes, and writes the ground and contacts with it. */
+/* Converts <collision>s and <visual>s of a robot to shapes, and writes contacts with the ground and among them. */
 #pragma once
 
+#include "base/diagnostics.h"
 #include "robots/robot_elements.h"
-
-/* Returns a coefficient of friction, or the usual one if it is NAN. */
-double shape_friction(double friction);
-
-/* Writes PREFIX_stiffness, PREFIX_damping and PREFIX_friction. friction: NAN where contacts differ. */
-void write_contact_parameters(const struct Writer *writer, const struct Robot *robot, const char *prefix,
-                              double friction);
-
-/* Writes a compliant contact with these parameters. friction: its own coefficient; NAN for that of the parameter. */
-void write_shape_contact(const struct Writer *writer, char *name, char *const shapes[2], const char *prefix,
-                         double friction);
 
 /* Writes the plane z = 0, or that of the file, and the parameters of contacts with it. */
 void write_ground(struct Writer *writer, const struct Robot *robot);
@@ -22,3 +12,12 @@ void write_ground(struct Writer *writer, const struct Robot *robot);
  * writes the contacts LINK_ground1, ... of the former.
  */
 void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves);
+
+/*
+ * Finds the pairs of shapes of a URDF: of links that move relative to each other, and are not parent and child. Warns
+ * of pairs of types that cannot touch.
+ */
+void find_pairs(struct Robot *robot, const struct RobotOptions *options, const struct Diagnostics *diagnostics);
+
+/* Writes the contacts of all pairs, with their parameters. The shapes are written before. */
+void write_pairs(struct Writer *writer, const struct Robot *robot);

@@ -27,7 +27,6 @@
 #include "robots/mjcf/mjcf.h"
 #include "robots/robot_elements.h"
 #include "robots/robot_joint.h"
-#include "robots/robot_pairs.h"
 #include "robots/robot_shapes.h"
 #include "robots/robot_tendon.h"
 #include "robots/robot_transmission.h"

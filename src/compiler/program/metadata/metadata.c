@@ -2,9 +2,9 @@
 
 #include <math.h>
 
+#include "algebra/cone.h"
 #include "base/memory.h"
-#include "program/metadata/constraint_metadata.h"
-#include "program/metadata/inertia_names.h"
+#include "interface/symbol_names.h"
 
 static double value_or(double value, double otherwise) {
   return isnan(value) ? otherwise : value;
@@ -85,6 +85,103 @@ static struct StepMetadata step_metadata_of(const struct Program *program) {
                                .work = program->work,
                                .operations = program->operations,
                                .depends_on_time = program->interface->depends_on_time};
+}
+
+/* Names a block's dependences. The pivot of a row depends on the rows eliminated up to it. */
+static void name_block(const struct Graph *graph, const struct InertiaBlock *block, size_t coordinates,
+                       const char **texts) {
+  struct SymbolNames names = {0};
+  for (size_t i = 0; i < block->count && block->tree == NULL; i++) {
+    if (block->coordinates[i] >= coordinates) continue;
+    symbol_names_add(&names, graph, block->mass + block->start[i], block->start[i + 1] - block->start[i]);
+    texts[block->coordinates[i]] = symbol_names_text(&names, graph);
+  }
+}
+
+/* Names dependences in kinematic trees. The articulated inertia of a link depends on the links outward of it. */
+static void name_pivots_of_trees(const struct Graph *graph, const struct Inertia *inertia, const char **texts) {
+  const struct Pivot **pivots = allocate(inertia->pivot_count, sizeof(struct Pivot *));
+  Node *values = allocate(inertia->pivot_count, sizeof *values);
+  size_t count = 0;
+  for (size_t i = 0; i < inertia->pivot_count; i++) {
+    if (inertia_block_of(inertia, inertia->pivots[i].coordinate)->tree == NULL) continue;
+    values[count] = inertia->pivots[i].value;
+    pivots[count++] = &inertia->pivots[i];
+  }
+  struct SymbolNames *names = allocate(count, sizeof *names);
+  symbol_names_add_each(names, graph, values, count);
+  for (size_t i = 0; i < count; i++) texts[pivots[i]->coordinate] = symbol_names_text(&names[i], graph);
+}
+
+/* Returns inertia_depends_on of struct Lagrangian; NULL without coordinates. */
+static const char *const *inertia_names_of(const struct Program *program) {
+  const struct Inertia *inertia = program->equations->inertia;
+  size_t n = program->equations->count;
+  if (n == 0) return NULL;
+  const char **texts = allocate(n, sizeof *texts);
+  for (size_t b = 0; b < inertia->block_count; b++) name_block(program->model->graph, &inertia->blocks[b], n, texts);
+  name_pivots_of_trees(program->model->graph, inertia, texts);
+  return texts;
+}
+
+/*
+ * Marks the inputs that the constraint contains, directly or by their derivatives. Returns their names, NULL for none.
+ */
+static char *mark_inputs(const struct Model *model, Node constraint, bool *is_prescribed_input) {
+  const struct Graph *graph = model->graph;
+  struct Cone *cone = graph->cone;
+  char *names = NULL;
+  cone_collect(cone, graph, &constraint, 1);
+  for (size_t i = 0; i < model->inputs.count; i++) {
+    if (!cone_has(cone, model->inputs.items[i].node)) continue;
+    size_t input = i;
+    while (is_input_rate(model, input)) input--;
+    is_prescribed_input[input] = true;
+    char *before = names;
+    names =
+        format_text("%s%s%s", before != NULL ? before : "", before != NULL ? ", " : "", model->inputs.items[i].name);
+  }
+  return names;
+}
+
+static bool has_inputs(const struct Model *model) {
+  bool has = false;
+  for (size_t j = 0; j < model->constraints.count; j++)
+    has |= graph_depends_on(model->graph, model->constraints.items[j].node, INPUT);
+  return has;
+}
+
+static void add_inputs(struct ConstraintTable *metadata, const struct Model *model) {
+  bool *is_prescribed_input = allocate(model->inputs.count, sizeof *is_prescribed_input);
+  const char **inputs = allocate(model->constraints.count, sizeof *inputs);
+  struct PrescribedInput *prescribed_inputs = allocate(model->inputs.count, sizeof *prescribed_inputs);
+  for (size_t j = 0; j < model->constraints.count; j++)
+    inputs[j] = mark_inputs(model, model->constraints.items[j].node, is_prescribed_input);
+  for (size_t i = 0; i < model->inputs.count; i++)
+    if (is_prescribed_input[i])
+      prescribed_inputs[metadata->prescribed_input_count++] = (struct PrescribedInput){i, input_rate_count(model, i)};
+  metadata->inputs = inputs;
+  metadata->prescribed_inputs = prescribed_inputs;
+}
+
+static const bool *fixed_coordinates(const struct VariableList *coordinates) {
+  bool *is_fixed = allocate(coordinates->count, sizeof *is_fixed);
+  for (size_t i = 0; i < coordinates->count; i++) is_fixed[i] = coordinates->items[i].is_fixed;
+  return is_fixed;
+}
+
+/* Returns the table without its functions; empty without constraints. */
+static struct ConstraintTable constraint_metadata_of(const struct Program *program) {
+  const struct Model *model = program->model;
+  struct ConstraintTable metadata = {.count = model->constraints.count};
+  if (metadata.count == 0) return metadata;
+  const char **names = allocate(metadata.count, sizeof *names);
+  for (size_t i = 0; i < metadata.count; i++) names[i] = model->constraints.items[i].name;
+  metadata.names = names;
+  if (has_inputs(model)) add_inputs(&metadata, model);
+  if (has_function(program, FUNCTION_START_POSITIONS))
+    metadata.coordinate_is_fixed = fixed_coordinates(&model->coordinates);
+  return metadata;
 }
 
 struct Lagrangian metadata_of(const struct Program *program, size_t work_count) {

@@ -1,4 +1,4 @@
-#include "read/elements/constraint_reader.h"
+#include "read/elements/readers.h"
 
 #include <math.h>
 

@@ -6,23 +6,18 @@
 
 #include "base/memory.h"
 #include "mechanics/energies.h"
-#include "read/context/function_reader.h"
 #include "read/context/includes.h"
 #include "read/context/value_texts.h"
 #include "read/context/variables.h"
-#include "read/elements/constraint_reader.h"
 #include "read/elements/named_expressions.h"
 #include "read/elements/parameters.h"
-#include "read/context/preset_reader.h"
-#include "read/context/task_reader.h"
+#include "read/elements/readers.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
-#include "read/elements/table_reader.h"
 #include "names/definitions.h"
 #include "read/shapes/drawn_lines.h"
 #include "read/shapes/shapes.h"
 #include "read/space/bodies.h"
-#include "read/space/bushing.h"
 #include "read/space/forces.h"
 #include "read/space/frames.h"
 #include "read/space/joints.h"
@@ -326,12 +321,10 @@ static void read_dissipation(struct Reader *reader, xmlNodePtr node) {
   model->forces.any = true;
 }
 
-typedef void Action(struct Reader *reader, xmlNodePtr node);
-
 /* The functions that read an element, one per pass; NULL for none. The table is sorted by name. */
 struct ElementReaders {
   const char *name;
-  Action *declare, *collect, *place, *read, *draw;
+  ElementReader *declare, *collect, *place, *read, *draw;
   bool is_of_system; /* read in the main file only, ignored in included ones */
 };
 
@@ -383,10 +376,10 @@ void read_element(struct Reader *reader, xmlNodePtr node, enum Pass pass) {
   const struct ElementReaders *element =
       bsearch(node->name, elements, sizeof elements / sizeof *elements, sizeof *elements, compare);
   if (element == NULL || (element->is_of_system && reader->source->outer != NULL)) return;
-  Action *const actions[] = {[DECLARATIONS] = element->declare,
-                             [DEFINITIONS] = element->collect,
-                             [POSITIONS] = element->place,
-                             [EXPRESSIONS] = element->read,
-                             [DRAWING] = element->draw};
+  ElementReader *const actions[] = {[DECLARATIONS] = element->declare,
+                                    [DEFINITIONS] = element->collect,
+                                    [POSITIONS] = element->place,
+                                    [EXPRESSIONS] = element->read,
+                                    [DRAWING] = element->draw};
   if (actions[pass] != NULL) actions[pass](reader, node);
 }

@@ -1,4 +1,4 @@
-#include "read/elements/table_reader.h"
+#include "read/elements/readers.h"
 
 #include <math.h>
 #include <string.h>

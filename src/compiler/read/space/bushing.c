@@ -1,4 +1,4 @@
-#include "read/space/bushing.h"
+#include "read/elements/readers.h"
 
 #include <string.h>
 

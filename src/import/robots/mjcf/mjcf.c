@@ -16,16 +16,10 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "robots/mjcf/mjcf_actuators.h"
-#include "robots/mjcf/mjcf_attributes.h"
 #include "robots/mjcf/mjcf_contacts.h"
-#include "robots/mjcf/mjcf_equality.h"
-#include "robots/mjcf/mjcf_geoms.h"
 #include "robots/expansion/mjcf_includes.h"
 #include "robots/expansion/mjcf_replicas.h"
-#include "robots/mjcf/mjcf_keyframe.h"
-#include "robots/mjcf/mjcf_springs.h"
-#include "robots/mjcf/mjcf_tendons.h"
+#include "robots/mjcf/mjcf_sections.h"
 #include "robots/mjcf/mjcf_tree.h"
 #include "robots/mjcf/mjcf_values.h"
 #include "xml/nodes.h"
@@ -256,10 +250,8 @@ static void read_children(struct Mjcf *mjcf, xmlNodePtr node, char *parent, cons
   }
 }
 
-typedef void Read(struct Mjcf *mjcf, xmlNodePtr node);
-
 /* Calls `read` for each section of this name, or if inside for each element in them. */
-static void for_each(struct Mjcf *mjcf, const char *section, bool inside, Read *read) {
+static void for_each(struct Mjcf *mjcf, const char *section, bool inside, MjcfReader *read) {
   for (xmlNodePtr node = mjcf->root->children; node != NULL; node = node->next) {
     if (!is_element(node, section)) continue;
     if (!inside) read(mjcf, node);

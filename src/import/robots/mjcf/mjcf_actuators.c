@@ -1,10 +1,9 @@
-#include "robots/mjcf/mjcf_actuators.h"
+#include "robots/mjcf/mjcf_sections.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "robots/mjcf/mjcf_tendons.h"
 #include "robots/mjcf/mjcf_tree.h"
 #include "xml/nodes.h"
 

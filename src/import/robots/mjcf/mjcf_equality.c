@@ -1,9 +1,8 @@
-#include "robots/mjcf/mjcf_equality.h"
+#include "robots/mjcf/mjcf_sections.h"
 
 #include <string.h>
 
 #include "base/memory.h"
-#include "robots/mjcf/mjcf_tendons.h"
 #include "robots/mjcf/mjcf_tree.h"
 #include "xml/nodes.h"
 

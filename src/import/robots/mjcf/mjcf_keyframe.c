@@ -1,4 +1,4 @@
-#include "robots/mjcf/mjcf_keyframe.h"
+#include "robots/mjcf/mjcf_sections.h"
 
 #include <string.h>
 
