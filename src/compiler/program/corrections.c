@@ -10,7 +10,7 @@
  * of each constrained block: O(n^3) if it is full, O(n) for a tree, whose solution is symbolic. E. Hairer, C. Lubich,
  * G. Wanner: Geometric Numerical Integration, section IV.4.
  */
-#include "program/corrections.h"
+#include "program/builders.h"
 
 #include "saddle.h"
 

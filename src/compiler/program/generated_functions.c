@@ -1,8 +1,7 @@
 #include "program/generated_functions.h"
 
 #include "base/memory.h"
-#include "program/corrections.h"
-#include "program/least_forces.h"
+#include "program/builders.h"
 #include "program/program.h"
 
 static struct IrFunction *build_prepare(const struct Program *program, struct CodeGenerator *generator) {

@@ -10,7 +10,7 @@
  * J is constant nearby (G. Golub, V. Pereyra: The differentiation of pseudo-inverses and nonlinear least squares
  * problems whose variables separate, 1973).
  */
-#include "program/least_forces.h"
+#include "program/builders.h"
 
 #include "base/memory.h"
 

@@ -1,13 +1,11 @@
-#include "read/checks.h"
+#include "read/stages.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "mechanics/energies.h"
-#include "read/event_checks.h"
 #include "read/expressions/named_functions.h"
-#include "read/state_checks.h"
 
 static void check_work(const struct Reader *reader) {
   const struct Model *model = reader->model;

@@ -1,4 +1,4 @@
-#include "read/event_checks.h"
+#include "read/stages.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
  * Nested loops multiply, so each step also counts units of work, and the graph's limit of work ends the expansion. The
  * cost is linear in the number of expanded elements.
  */
-#include "read/expansion.h"
+#include "read/stages.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "read/linearization_reader.h"
+#include "read/stages.h"
 
 #include <math.h>
 #include <string.h>

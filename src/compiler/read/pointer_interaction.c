@@ -1,4 +1,4 @@
-#include "read/pointer_interaction.h"
+#include "read/stages.h"
 
 #include "algebra/simplify.h"
 #include "base/memory.h"

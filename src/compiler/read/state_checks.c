@@ -1,4 +1,4 @@
-#include "read/state_checks.h"
+#include "read/stages.h"
 
 #include "algebra/differentiate.h"
 #include "base/memory.h"

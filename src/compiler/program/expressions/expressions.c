@@ -8,7 +8,6 @@
 #include "base/memory.h"
 #include "program/expressions/accelerations.h"
 #include "program/expressions/jacobian.h"
-#include "program/expressions/lu_pattern.h"
 
 /* Sets the seeds of modes, whose start values are knowns of initialization mode. Modes are stored with parameters. */
 static void create_mode_seeds(const struct Model *model, Node *seeds) {

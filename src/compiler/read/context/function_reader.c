@@ -1,4 +1,4 @@
-#include "read/elements/readers.h"
+#include "read/context/readers.h"
 
 #include <math.h>
 #include <string.h>

@@ -11,7 +11,7 @@
 #include "read/context/variables.h"
 #include "read/elements/named_expressions.h"
 #include "read/elements/parameters.h"
-#include "read/elements/readers.h"
+#include "read/context/readers.h"
 #include "read/elements/start_expressions.h"
 #include "read/elements/switching_reader.h"
 #include "names/definitions.h"

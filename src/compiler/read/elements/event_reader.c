@@ -4,7 +4,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "read/elements/switching_reader.h"
-#include "read/expressions/comparisons.h"
+#include "read/expressions/constructs.h"
 #include "names/piecewise_functions.h"
 
 /* Kinds of symbols in conditions and assignments of events. */

@@ -1,4 +1,4 @@
-#include "read/expressions/calculus.h"
+#include "read/expressions/constructs.h"
 
 #include <ctype.h>
 #include <string.h>

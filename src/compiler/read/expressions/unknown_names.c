@@ -1,4 +1,4 @@
-#include "read/expressions/unknown_names.h"
+#include "read/expressions/constructs.h"
 
 #include <string.h>
 

@@ -19,7 +19,6 @@
 #include "robots/mjcf/mjcf_contacts.h"
 #include "robots/expansion/mjcf_includes.h"
 #include "robots/expansion/mjcf_replicas.h"
-#include "robots/mjcf/mjcf_sections.h"
 #include "robots/mjcf/mjcf_tree.h"
 #include "robots/mjcf/mjcf_values.h"
 #include "xml/nodes.h"

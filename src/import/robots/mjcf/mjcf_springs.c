@@ -9,7 +9,7 @@
  *
  * R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 6.
  */
-#include "robots/mjcf/mjcf_sections.h"
+#include "robots/mjcf/mjcf_values.h"
 
 #include <math.h>
 #include <string.h>
