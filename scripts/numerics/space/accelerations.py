@@ -29,14 +29,16 @@ ROUND = 0.05  # s of one program in one round
 SYSTEM = Path("/usr/include")
 HEADERS = [("Eigen/Core", [SYSTEM / "eigen3"], "libeigen3-dev"),
            ("urdf_model/model.h", [SYSTEM / "urdfdom_headers", SYSTEM], "liburdfdom-headers-dev")]  # fmt: skip
-# Pinocchio's headers have longer lists than Boost's preprocessed headers allow. No -march=native, since the library is built without it.
+# Pinocchio's headers have longer lists than Boost's preprocessed headers allow.
 FLAGS = ["-O3", "-DNDEBUG", "-std=c++17", "-DPINOCCHIO_WITH_URDFDOM", "-DBOOST_MPL_LIMIT_LIST_SIZE=30", "-DBOOST_MPL_LIMIT_VECTOR_SIZE=30",
          "-DBOOST_MPL_CFG_NO_PREPROCESSED_HEADERS"]  # fmt: skip
+# Pinocchio's programs, and their flags. Those for this machine keep the alignment and the allocation of Eigen in the library, which is built without them.
+PROGRAMS = {"aba": [], "aba-native": ["-march=native", "-DEIGEN_MAX_ALIGN_BYTES=16", "-DEIGEN_MALLOC_ALREADY_ALIGNED=1"]}
 LIBRARIES = ["-lpinocchio_default", "-lpinocchio_parsers", "-lurdfdom_model"]
 NOTE = ("Nanoseconds of the processor's time, medians of rounds in which the programs take turns; the ratio is the median of the rounds' ratios. The FMU's: "
         "derivatives() of its generated C, with gcc -O2 as in the FMU. Pinocchio's: aba() of "
-        "its release for Python, from C++ with -O3, in the faster of its two conventions. It has a joint of its own for the finger of the Panda that mimics the other.")  # fmt: skip
-HEADER = ["robot", "joints", "FMU [ns]", "Pinocchio [ns]", "Pinocchio / FMU"]
+        "its release for Python, from C++ with -O3, in the faster of its two conventions; native: with -march=native, which the FMU does without. It has a joint of its own for the finger of the Panda that mimics the other.")  # fmt: skip
+HEADER = ["robot", "joints", "FMU [ns]", "Pinocchio [ns]", "native [ns]", "Pinocchio / FMU", "native / FMU"]
 
 
 class Missing(Exception):
@@ -101,9 +103,9 @@ def folder_of(header, folders, package):
     return found
 
 
-def pinocchio_program(quick):
-    """Compile the program with Pinocchio and return its path; this takes minutes once, and is skipped in a quick report."""
-    program, source, folder = FOLDER / "aba", SOURCES / "aba.cpp", prefix()
+def pinocchio_program(name, quick):
+    """Compile the program of PROGRAMS and return its path; this takes minutes once, and is skipped in a quick report."""
+    program, source, folder = FOLDER / name, SOURCES / "aba.cpp", prefix()
     if is_current(program, source):
         return program
     if shutil.which("g++") is None:
@@ -113,7 +115,7 @@ def pinocchio_program(quick):
         raise Missing("Pinocchio's times are not here: its program takes minutes to compile, which a report without --quick does once.")
     FOLDER.mkdir(parents=True, exist_ok=True)
     includes = [f"-I{path}" for path in (eigen, folder / "include", folder / "include" / "urdfdom", robots)]
-    run("g++", *FLAGS, *includes, source, "-o", program, f"-L{folder}/lib", *LIBRARIES, f"-Wl,-rpath,{folder}/lib")
+    run("g++", *FLAGS, *PROGRAMS[name], *includes, source, "-o", program, f"-L{folder}/lib", *LIBRARIES, f"-Wl,-rpath,{folder}/lib")
     return program
 
 
@@ -129,11 +131,11 @@ def measured(programs, rounds):
 
 
 def row(name, text, times):
-    """Return the row of a robot; `times` has the seconds of one or two programs in each round."""
+    """Return the row of a robot; `times` has the seconds of the FMU, and of Pinocchio's programs if they are there, in each round."""
     ours, *others = zip(*times)
-    theirs = median(others[0]) if others else math.nan
-    ratio = median(their / our for our, their in times) if others else math.nan
-    return [name, text, round(1e9 * median(ours)), theirs * 1e9, ratio]
+    others += [[math.nan] * len(ours)] * (len(PROGRAMS) - len(others))
+    ratios = [median(their / our for our, their in zip(ours, theirs)) for theirs in others]
+    return [name, text, round(1e9 * median(ours)), *(1e9 * median(theirs) for theirs in others), *ratios]
 
 
 def rows(quick):
@@ -146,9 +148,9 @@ def rows(quick):
     except Missing as error:
         return [], [f"No accelerations of robots: {error}"]
     try:
-        pinocchio = pinocchio_program(quick)
+        pinocchio = [pinocchio_program(name, quick) for name in PROGRAMS]
     except (Missing, RuntimeError) as error:
-        pinocchio, sentences = None, [str(error)]
+        pinocchio, sentences = [], [str(error)]
     cases = [(name, text, robots / path, base) for name, text, path, base in ROBOTS[: 1 if quick else None]]
     if not quick and hand.source() is None:
         sentences.append("No Shadow hand: the Python package gymnasium-robotics, or mujoco, is not installed here.")
@@ -156,7 +158,6 @@ def rows(quick):
         cases.append(("Shadow", "hand of 24 axes", written(FOLDER / "shadow.urdf", hand.urdf()), "fixed"))
     cases += [(f"Chain{count}", f"{count} axes, one after another", chain(count), "fixed") for count in CHAINS if not quick]
     for name, text, path, base in cases:
-        programs = [[our_program(name, path, base)]]
-        programs += [[pinocchio, path, base]] if pinocchio else []
+        programs = [[our_program(name, path, base)], *([program, path, base] for program in pinocchio)]
         lines.append(row(name, text, measured(programs, 5 if quick else 20)))
     return lines, sentences
