@@ -32,7 +32,27 @@ AT_WALL = f"""{free("a", (-0.4, -0.4, 0.1), 'type="box" sizeX="0.2" sizeY="0.2" 
   <parameter name="Fx" start="0" unit="N/s"/><parameter name="Fy" start="0" unit="N/s"/><parameter name="Fz" start="0" unit="N/s"/>
   <parameter name="height" start="0" unit="m"/><point name="pushed" in="a" z="height"/><force on="pushed" x="Fx*time" y="Fy*time" z="Fz*time"/>
   <state name="given" unit="J" rate="time*(Fx*der(pushed.x) + Fy*der(pushed.y) + Fz*der(pushed.z))"/>"""
+HEAP = 12
+
+
+def heap():
+    """Spheres that move in a vertical plane without friction, between two walls."""
+    walls = "".join(
+        f'<frame name="at{name}"><translate x="{x}"/><rotate axis="y" angle="{angle}"/></frame><shape name="{name}" in="at{name}" type="plane"/>'
+        for name, x, angle in [("left", -0.6, "pi/2"), ("right", 0.6, "-pi/2")]
+    )
+    spheres, pairs = "", []
+    for k in range(HEAP):
+        x, z = -0.35 + 0.25 * (k % 4) + 0.01 * (k // 4 % 3), 0.15 + 0.22 * (k // 4)
+        spheres += f"""<coordinate name="x{k}" velocity="vx{k}" unit="m" start="{x}"/><coordinate name="z{k}" velocity="vz{k}" unit="m" start="{z}"/>
+  <particle name="p{k}" mass="m" x="x{k}" z="z{k}"/><shape name="s{k}" in="p{k}" type="sphere" radius="0.1"/>"""
+        pairs += [(k, other) for other in ["floor", "left", "right", *(f"s{j}" for j in range(k))]]
+    contacts = "".join(f'<contact name="c{k}_{other}" between="s{k}" and="{other}" restitution="e"/>' for k, other in pairs)
+    return f'<shape name="floor" type="plane"/>{walls}{spheres}{contacts}'
+
+
 TEXTS = {
+    "Heap": heap(),
     "ThrownBox": FLOOR,
     "BoxOnPlate": PLATE + FLOOR.replace('name="floor"', 'name="floor" in="plate"'),
     "PushedCylinder": f"""<parameter name="rate" start="2" unit="N/s"/>{free("a", (0, 0, 0.1), 'type="cylinder" radius="0.06" length="0.2"')}
@@ -138,4 +158,22 @@ def test_pushed_cylinder(mu, rate):
     instance.step(0.04 * tips)
     r1, r2 = instance.get("ar1", "ar2")
     assert r2 * edge[0] - r1 * edge[1] > 1e-4
+    instance.free()
+
+
+def test_a_heap_lands():
+    """
+    Twelve spheres fall between walls. Their impacts do not end one after another, and those that then come to rest close others.
+    Energy is lost, and no two spheres come closer than their radii.
+    """
+    instance = fmu.Instance("Heap").initialize()
+    energy = instance.get("totalEnergy")
+    for _ in range(5):
+        instance.step(0.1)
+        assert instance.get("totalEnergy") <= energy + 1e-9
+        energy = instance.get("totalEnergy")
+    places = np.array([instance.get(f"x{k}", f"z{k}") for k in range(HEAP)])
+    distances = [np.linalg.norm(places[i] - places[k]) for i in range(HEAP) for k in range(i)]
+    assert min(distances) >= 0.2 - 1e-9 and places[:, 1].min() >= 0.1 - 1e-9
+    assert min(distances) <= 0.2 + 1e-9
     instance.free()

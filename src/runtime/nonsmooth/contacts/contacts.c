@@ -2,8 +2,9 @@
  * Contacts: impacts, rest and parting. An impact takes the touching contact that closes fastest, together with
  * those as fast within rounding; the other touching contacts are open. Contacts that close because of it have
  * impacts of their own after it. So a row of touching bodies passes an impulse on (Newton's cradle). After
- * IMPACT_LIMIT impacts of an event all that touch are taken at once, without restitution. If a contact still closes
- * then, bodies are crushed, and the motion ends.
+ * IMPACT_LIMIT impacts of an event all that touch are taken at once, without restitution. Contacts that come to rest
+ * then may close others, which are taken in the same way; each time, kinetic energy is lost. If a contact closes after
+ * PLASTIC_LIMIT of these, bodies are crushed, and the motion ends.
  *
  * act_once() makes one change a round. It opens contacts that were lifted or part, else takes an impact, else
  * closes contacts that come to rest. Otherwise it projects out penetrations, or opens the closed contact that pulls
@@ -27,10 +28,10 @@
 #include "nonsmooth/resolution.h"
 
 /*
- * IMPACT_LIMIT: impacts of an event that are taken one after another. LIFT_LIMIT: projections of penetrated contacts,
- * in an event and at the start.
+ * IMPACT_LIMIT: impacts of an event that are taken one after another. PLASTIC_LIMIT: further ones, of all contacts that
+ * touch. LIFT_LIMIT: projections of penetrated contacts, in an event and at the start.
  */
-enum { IMPACT_LIMIT = 1000, LIFT_LIMIT = 20 };
+enum { IMPACT_LIMIT = 1000, PLASTIC_LIMIT = 100, LIFT_LIMIT = 20 };
 
 /* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
 static const double equal_share = 1e-9;
@@ -557,7 +558,7 @@ static const char *act_once(struct Resolution *resolution, bool *again) {
   if (problem != NULL) return problem;
   if (((may_change && !resolution->jumped) || resolution->thrown) && open_parting(resolution)) return NULL;
   size_t contact = find_impact(resolution);
-  bool hits = contact<switches->contact_count, is_tried = resolution->impacts> IMPACT_LIMIT;
+  bool hits = contact<switches->contact_count, is_tried = resolution->impacts> IMPACT_LIMIT + PLASTIC_LIMIT;
   if (hits && is_tried && closes_clearly(resolution, contact))
     return contact_forces_report_crushed(resolution, contact);
   if (hits && !is_tried) return take_impact(resolution, contact) ? NULL : report_singular_impact(resolution, contact);
