@@ -19,6 +19,15 @@
  *   <surface of="ball" x="" y="" z="" nx="" ny="" nz=""/> a plane that an object hits, with the outward normal;
  *                                                         stop="true" at the limit of a coordinate
  *
+ * The FMU's page has a start scene, with numbers at the start values in place of formulas. Its objects have x, y, z and
+ * rotation or angle. It has rods, joints and surfaces if the author draws no lines, and also
+ *
+ *   <scene right="1 0 0" up="0 1 0">                      directions of the picture
+ *   <particle label="m1"/> <line label="l1"/>             the mass, and the parameter that is the length
+ *   <coordinate name="x" start="" from="" to="" along=""/>  along a line, from 0 to the start value
+ *   <coordinate name="phi" start="" from="" to="" axis=""/>  of a point that turns about another one and an axis
+ *   <input name="u"/> <output name="y"/>                  of a system without objects
+ *
  * All values except names are formulas of parameters, in m, kg, kg.m2 and m/s2. Exceptions, as numbers at the start
  * values: factors, forces, surfaces, and coordinates of joints that are not linear in the parameters. Without in="..."
  * an object is in the base.
@@ -27,9 +36,12 @@
 
 #include <libxml/xmlwriter.h>
 
-#include "model/model.h"
+#include "scene/start_scene.h"
 
 /* True if the system has bodies, frames, shapes or lines. */
 bool has_scene(const struct Model *model);
 
 void scene_write(xmlTextWriterPtr writer, const struct Model *model);
+
+/* Writes the scene for the page. */
+void start_scene_write(xmlTextWriterPtr writer, const struct StartScene *scene);

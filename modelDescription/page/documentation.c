@@ -6,9 +6,9 @@
 #include <libxml/xmlwriter.h>
 
 #include "base/memory.h"
-#include "drawing/svg.h"
 #include "equation_lines.h"
 #include "page.h"
+#include "scene.h"
 #include "variables_section.h"
 #include "xml_output.h"
 
@@ -75,6 +75,20 @@ static void write_head(const struct Page *page) {
   xmlTextWriterEndElement(page->writer);
 }
 
+/* Writes the scene as text, which the page's script replaces by a picture. */
+static void write_scene(const struct Page *page, const struct StartScene *scene) {
+  xmlBufferPtr buffer = xmlBufferCreate();
+  xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
+  xmlTextWriterSetIndent(writer, 1);
+  start_scene_write(writer, scene);
+  xmlFreeTextWriter(writer);
+  xmlTextWriterStartElement(page->writer, BAD_CAST "pre");
+  write_attribute(page->writer, "class", "scene");
+  xmlTextWriterWriteString(page->writer, xmlBufferContent(buffer));
+  xmlTextWriterEndElement(page->writer);
+  xmlBufferFree(buffer);
+}
+
 static void write_contents(const struct Page *page) {
   xmlTextWriterStartElement(page->writer, BAD_CAST "nav");
   for (size_t i = 0; i < page->heading_count; i++) {
@@ -95,7 +109,7 @@ static void write_origin(const struct Page *page) {
 }
 
 /* Writes the page around the sections, which are written first, as the contents list them. */
-static void write_page(const struct Page *page, const xmlBuffer *sections) {
+static void write_page(const struct Page *page, const struct StartScene *scene, const xmlBuffer *sections) {
   xmlTextWriterPtr writer = page->writer;
   xmlTextWriterWriteDTD(writer, BAD_CAST "html", NULL, NULL, NULL);
   xmlTextWriterStartElement(writer, BAD_CAST "html");
@@ -106,7 +120,7 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
   xmlTextWriterStartElement(writer, BAD_CAST "main");
   page_element(page, "h1", page->model->name);
   if (page->model->description != NULL) page_paragraph(page, page->model->description);
-  write_sketch(page->writer, page->drawing);
+  write_scene(page, scene);
   xmlTextWriterWriteRaw(writer, xmlBufferContent(sections));
   write_origin(page);
   xmlTextWriterEndElement(writer);
@@ -116,14 +130,13 @@ static void write_page(const struct Page *page, const xmlBuffer *sections) {
 }
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary,
-                         const struct Drawing *drawing) {
+                         const struct StartScene *scene) {
   struct Display display = {.graph = program->model->graph, .names = &summary->names};
   struct Page page = {.program = program,
                       .model = program->model,
                       .equations = program->equations,
                       .interface = program->interface,
                       .summary = summary,
-                      .drawing = drawing,
                       .display = &display};
   xmlBufferPtr sections = xmlBufferCreate();
   xmlTextWriterPtr writer = xmlNewTextWriterMemory(buffer, 0);
@@ -134,7 +147,7 @@ bool documentation_write(xmlBufferPtr buffer, const struct Program *program, con
     written = xmlTextWriterFlush(page.writer) >= 0;
     xmlFreeTextWriter(page.writer);
     page.writer = writer;
-    write_page(&page, sections);
+    write_page(&page, scene, sections);
     written = xmlTextWriterEndDocument(writer) >= 0 && written;
   }
   xmlFreeTextWriter(writer);

@@ -4,11 +4,11 @@
 
 #include <libxml/tree.h>
 
-#include "drawing/picture_shapes.h"
 #include "interface/summary.h"
 #include "program/program.h"
+#include "scene/start_scene.h"
 
 bool documentation_write(xmlBufferPtr buffer, const struct Program *program, const struct Summary *summary,
-                         const struct Drawing *drawing);
+                         const struct StartScene *scene);
 
 #endif

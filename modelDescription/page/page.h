@@ -10,7 +10,6 @@
 #include <libxml/xmlwriter.h>
 
 #include "display/display.h"
-#include "drawing/picture_shapes.h"
 #include "interface/summary.h"
 #include "program/program.h"
 
@@ -23,7 +22,6 @@ struct Page {
   const struct Equations *equations;
   const struct Interface *interface;
   const struct Summary *summary;
-  const struct Drawing *drawing;
   struct Display *display;
   const char **headings; /* of the sections so far, for the table of contents */
   size_t heading_count;

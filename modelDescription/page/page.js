@@ -1,4 +1,4 @@
-// Typesets the equations of the page, which are texts until then, and lets a reader search the variables.
+// Typesets the equations of the page, which are texts until then, draws its scene, and lets a reader search the variables.
 
 function element(name, attributes, ...children) {
   const created = Object.assign(document.createElement(name), attributes);
@@ -27,6 +27,17 @@ document.querySelectorAll(".step").forEach(typesetStep);
 
 const rows = [...document.querySelectorAll("#variables tr")].slice(1);
 for (const { cells } of rows) cells[0].innerHTML = mathmlOf(cells[0].dataset.latex);
+
+// Typesets a label, which is a name or a product of names and powers, by the LaTeX in the table. A label with other names stays a text.
+const latexOfNames = new Map(rows.map(({ cells }) => [cells[1].textContent, cells[0].dataset.latex]));
+const NAME = /[A-Za-z_][\w.[\]]*/g;
+const isKnown = name => latexOfNames.has(name) || name.length === 1;
+const typesetLabel = text => (text.match(NAME).every(isKnown) ? mathmlOf(text.replace(NAME, name => latexOfNames.get(name) ?? name).replace(/\*/g, "\\,")) : text);
+
+const scene = document.querySelector(".scene"), folded = element("details", {}, element("summary", {}, "as text"));
+drawScene(scene, typesetLabel);
+scene.replaceWith(folded);
+folded.append(scene);
 
 const search = document.getElementById("search");
 search.addEventListener("input", () => {

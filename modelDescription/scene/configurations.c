@@ -15,6 +15,7 @@
 #include "algebra/differentiate.h"
 #include "algebra/node_list.h"
 #include "base/memory.h"
+#include "least_squares.h"
 
 /* Coordinates up to which constraints are taken into account: all their derivatives are formed. */
 enum { MOST_COORDINATES = 200 };
@@ -70,53 +71,25 @@ static bool can_move(const struct Model *model, size_t coordinate) {
   return !is_prescribed && !model->coordinates.items[coordinate].is_fixed;
 }
 
-/*
- * Solves matrix x = x of n rows in place, by Gauss-Jordan elimination with row pivoting; overwrites the matrix.
- * Redundant rows, as in overconstrained closed chains, get the solution 0.
- */
-static void solve_small(size_t n, double *matrix, double *x) {
-  size_t *pivot = allocate(n + 1, sizeof *pivot);
-  bool *is_used = allocate(n + 1, sizeof *is_used);
-  for (size_t k = 0; k < n; k++) {
-    size_t row = n;
-    for (size_t i = 0; i < n; i++)
-      if (!is_used[i] && (row == n || fabs(matrix[i * n + k]) > fabs(matrix[row * n + k]))) row = i;
-    pivot[k] = row;
-    if (!(fabs(matrix[row * n + k]) > 1e-10)) pivot[k] = n;
-    if (pivot[k] == n) continue;
-    is_used[row] = true;
-    for (size_t i = 0; i < n; i++) {
-      double factor = i == row ? 0.0 : matrix[i * n + k] / matrix[row * n + k];
-      for (size_t j = k; j < n && factor != 0.0; j++) matrix[i * n + j] -= factor * matrix[row * n + j];
-      x[i] -= factor * x[row];
-    }
-  }
-  double *solution = allocate(n + 1, sizeof *solution);
-  for (size_t k = 0; k < n; k++)
-    if (pivot[k] < n) solution[k] = x[pivot[k]] / matrix[pivot[k] * n + k];
-  for (size_t k = 0; k < n; k++) x[k] = solution[k];
-  release(solution);
-  release(is_used);
-  release(pivot);
-}
-
 /* Subtracts J^T (J J^T)^-1 g from the coordinates that can move. Returns the largest |g| before the step. */
 static double step(const struct Configurations *levels, const double *values, double *symbols) {
   const struct Model *model = levels->model;
   size_t n = levels->count, coordinates = model->coordinates.count;
-  double *matrix = allocate(n * n, sizeof *matrix), *pull = allocate(n, sizeof *pull), largest = 0.0;
+  double *pull = allocate(n + 1, sizeof *pull), largest = 0.0;
+  struct LeastSquares system = least_squares_create(n, n);
   for (size_t i = 0; i < n; i++) {
-    pull[i] = values[levels->level[i]];
-    largest = fmax(largest, fabs(pull[i]));
+    double *row = least_squares_row(&system, i);
+    row[n] = values[levels->level[i]];
+    largest = fmax(largest, fabs(row[n]));
     for (size_t j = 0; j < n; j++)
       for (size_t k = 0; k < coordinates; k++)
-        if (can_move(model, k)) matrix[i * n + j] += values[levels->slope[i][k]] * values[levels->slope[j][k]];
+        if (can_move(model, k)) row[j] += values[levels->slope[i][k]] * values[levels->slope[j][k]];
   }
-  solve_small(n, matrix, pull);
+  least_squares_solve(&system, 0, pull);
   for (size_t k = 0; k < coordinates; k++)
     for (size_t i = 0; i < n && can_move(model, k); i++)
       symbols[model->graph->vertices[model->coordinates.items[k].node].left] -= values[levels->slope[i][k]] * pull[i];
-  release(matrix);
+  release(system.entries);
   release(pull);
   return largest;
 }

@@ -56,5 +56,7 @@ bool least_squares_solve(struct LeastSquares *system, size_t needed, double *sol
     solution[i] = size[i] == 0.0 ? 0.0 : upper[i * (n + 1) + n];
     for (size_t j = i + 1; j < n && size[i] != 0.0; j++) solution[i] -= upper[i * (n + 1) + j] * solution[j];
   }
+  release(upper);
+  release(size);
   return is_unique;
 }

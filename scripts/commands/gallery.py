@@ -99,15 +99,19 @@ BESIDE = ("fmu/systems.gif", "fmu/tutorials/laboratory.png", "fmu/tutorials/cran
 STYLE = """
 .systems { display: grid; grid-template-columns: repeat(auto-fill, minmax(230px, 1fr)); gap: 1rem; }
 .systems div { border: 1px solid #8884; border-radius: 8px; padding: .8rem; display: flex; flex-direction: column; gap: .4rem; }
-.sketch { display: block; width: 100%; height: 170px; }
-.sketch circle, .sketch polygon { fill: currentColor; }
-.sketch polyline { fill: none; stroke: currentColor; stroke-linecap: round; stroke-linejoin: round; }
-.sketch .notes { display: none; }
+.scene { display: none; }
+.sketch svg { display: block; width: 100%; height: 170px; }
+.sketch circle { fill: currentColor; }
+.sketch polyline { fill: none; stroke: currentColor; stroke-width: 3; stroke-linecap: round; stroke-linejoin: round; }
+.sketch .area { fill: currentColor; fill-opacity: .3; stroke-width: 1.5; }
+.sketch .face { fill-opacity: .1; }
+.sketch .ground { fill-opacity: .12; }
+.sketch .ground, .sketch .thin { stroke-width: 1.8; }
+.sketch .body { stroke-width: 7; }
+.sketch .body.area { stroke-width: 3; fill-opacity: .1; }
 .sketch .ground, .sketch .link { color: var(--bs-secondary-color); }
-.sketch .axis { color: var(--bs-border-color); }
 .sketch .body, .sketch .solid, .sketch .particle { color: var(--bs-link-color); }
 .sketch .base { color: var(--bs-body-color); }
-.sketch .hole { color: var(--bs-body-bg); }
 .systems h3 { margin: 0; font-size: 1.05rem; overflow-wrap: anywhere; }
 .systems p { margin: 0; font-size: .9rem; flex: 1; }
 .systems a { white-space: nowrap; }
@@ -152,13 +156,19 @@ def write_system(archive):
         addresses = {name_of_first: first, "edit": f"laboratory.html#{name}"} | addresses
     sentence = html.escape(read_tree(archive).get("description") or "")
     words = " · ".join(f'<a href="{address}">{text}</a>' for text, address in addresses.items())
-    return f'<div><a href="{first}" aria-label="{name}">{sketch_of(equations)}</a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
+    return f'<div><a href="{first}" aria-label="{name}">{scene_of_page(equations)}</a><h3>{name}</h3><p>{sentence}</p><span>{words}</span></div>'
 
 
-def sketch_of(page):
-    """Return the picture in a system's page of equations, whose colors are those of the page around it; "" if it has none."""
-    found = re.search(r'<svg class="sketch".*?</svg>', page, re.S)
+def scene_of_page(page):
+    """Return the scene in a system's page of equations, which the site's script draws; "" if it has none."""
+    found = re.search(r'<pre class="scene">.*?</pre>', page, re.S)
     return found[0] if found else ""
+
+
+def drawing_script():
+    """Return the script of the pages that draws scenes, which begins when a page of the site is loaded."""
+    script = (ROOT / "modelDescription" / "page" / "sketch.js").read_text(encoding="utf-8")
+    return f"{{{script}\ndocument.querySelectorAll('.scene').forEach((scene) => drawScene(scene));\n}}\n"
 
 
 def can_be_edited(name):
@@ -206,8 +216,9 @@ def slug(text, separator):
 def build_site(navigation):
     logging.basicConfig(format="%(message)s", level=logging.WARNING)  # shows the warnings that end a strict build
     shutil.copy(ROOT / "scripts" / "pages" / "gallery_search.js", PAGES / "search.js")
+    write_whole(PAGES / "drawing.js", drawing_script())
     settings = {"site_name": "lagrange-fmu", "docs_dir": str(PAGES), "site_dir": str(SITE), "nav": navigation, "use_directory_urls": False, "strict": True,
-                "extra_css": ["style.css"], "extra_javascript": ["search.js"], "plugins": ["search", {"mkdocstrings": {"handlers": {"python": {"paths": [str(ROOT / "scripts" / "wheel")], "options": DOCSTRINGS}}}}],
+                "extra_css": ["style.css"], "extra_javascript": ["search.js", "drawing.js"], "plugins": ["search", {"mkdocstrings": {"handlers": {"python": {"paths": [str(ROOT / "scripts" / "wheel")], "options": DOCSTRINGS}}}}],
                 "theme": {"name": "mkdocs", "highlightjs": False}}  # fmt: skip
     file = BUILD / "mkdocs.json"  # JSON is YAML, which MkDocs reads
     write_whole(file, json.dumps(settings))

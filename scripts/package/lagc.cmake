@@ -22,7 +22,7 @@ function(add_string name)
 endfunction()
 add_string(system_schema fmu/system.xsd)
 add_string(page_style modelDescription/page/page.css)
-add_string(page_script modelDescription/page/mathml.js modelDescription/page/page.js)
+add_string(page_script modelDescription/page/mathml.js modelDescription/page/sketch.js modelDescription/page/page.js)
 add_string(license_text LICENSE)
 
 # list_of_names(LIST VARIABLE): sets VARIABLE to C that defines LIST as an array of strings, which ends with a null pointer.

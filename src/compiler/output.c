@@ -7,10 +7,9 @@
 #include "base/guid.h"
 #include "base/memory.h"
 #include "base/platform.h"
-#include "drawing/flange_drawing.h"
+#include "drawing/icon.h"
 #include "drawing/png.h"
 #include "drawing/svg.h"
-#include "drawing/system_drawing.h"
 #include "fmi3_description.h"
 #include "licenses.h"
 #include "model_description.h"
@@ -141,19 +140,20 @@ static struct FileContent text_content(const char *text) {
 }
 
 static bool write_buffers(const struct Program *program, const struct Summary *summary, const char *guid,
-                          const struct Drawing *drawing, const xmlBufferPtr *buffers) {
-  struct Drawing flange = flange_drawing();
+                          const struct StartScene *scene, const xmlBufferPtr *buffers) {
   return model_description_write(buffers[DESCRIPTION], program, guid) &&
          fmi3_description_write(buffers[DESCRIPTION_OF_FMI3], program, guid) &&
          fmi3_terminals_write(buffers[TERMINALS], program) &&
-         fmi3_build_description_write(buffers[BUILD_DESCRIPTION], program) && write_icon(buffers[ICON], drawing) &&
-         write_icon(buffers[FLANGE_ICON], &flange) &&
-         documentation_write(buffers[DOCUMENTATION], program, summary, drawing);
+         fmi3_build_description_write(buffers[BUILD_DESCRIPTION], program) &&
+         documentation_write(buffers[DOCUMENTATION], program, summary, scene);
 }
 
-/* Adds the pictures of a flange if terminals use them. */
-static void add_flange(const struct Program *program, struct FileContent *contents) {
-  struct Drawing flange = flange_drawing();
+/* Adds the icons; those of a flange if terminals use them. */
+static void add_icons(const struct Program *program, const struct StartScene *scene, struct FileContent *contents) {
+  struct Drawing icon = icon_of(scene), flange = flange_icon();
+  contents[ICON] = text_content(svg_of(&icon));
+  contents[FLANGE_ICON] = text_content(svg_of(&flange));
+  contents[PICTURE].bytes = (const char *)png_of(&icon, &contents[PICTURE].length);
   contents[FLANGE_PICTURE].bytes = (const char *)png_of(&flange, &contents[FLANGE_PICTURE].length);
   if (fmi3_terminal_count(program) == 0) contents[FLANGE_PICTURE].bytes = contents[FLANGE_ICON].bytes = NULL;
 }
@@ -173,15 +173,14 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   bool written = model_description_write(anonymous, program, "");
   guid_of((const char *const[]){code, (const char *)xmlBufferContent(anonymous)}, 2, guid);
   char *file = format_text("#define GUID \"%s\"\n%s", guid, code);
-  struct Drawing drawing = drawing_of(program->model);
-  written = written && write_buffers(program, summary, guid, &drawing, buffers);
+  struct StartScene scene = start_scene_of(program->model);
+  written = written && write_buffers(program, summary, guid, &scene, buffers);
   for (int i = 0; i < FILE_COUNT; i++) contents[i] = text_content((const char *)xmlBufferContent(buffers[i]));
   const struct Method *method = program->equations->method;
   if (method != NULL && method->uses_library) contents[BUILD_DESCRIPTION].bytes = NULL;
   contents[LICENSE] = text_content(licenses);
   contents[CODE] = text_content(file);
-  add_flange(program, contents);
-  contents[PICTURE].bytes = (const char *)png_of(&drawing, &contents[PICTURE].length);
+  add_icons(program, &scene, contents);
   limit = graph_limit(program->model->graph);
   if (limit != NULL)
     report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);

@@ -7,7 +7,6 @@
 #include "assembly.h"
 #include "base/guid.h"
 #include "base/memory.h"
-#include "drawing/system_drawing.h"
 #include "interface/arrays.h"
 #include "interface/listing.h"
 #include "mechanics/motion.h"
@@ -26,11 +25,11 @@ static const char *text_in(const xmlBufferPtr buffer) {
 /* Creates the descriptions and the GUID. Returns false if memory is exhausted. */
 static bool describe(const struct Program *program, const struct Summary *summary, char *guid) {
   xmlBufferPtr anonymous = xmlBufferCreate(), description = xmlBufferCreate(), page = xmlBufferCreate();
-  struct Drawing drawing = drawing_of(program->model);
+  struct StartScene scene = start_scene_of(program->model);
   if (!model_description_write(anonymous, program, "")) return false;
   guid_of((const char *const[]){text_in(anonymous)}, 1, guid);
   bool written =
-      model_description_write(description, program, guid) && documentation_write(page, program, summary, &drawing);
+      model_description_write(description, program, guid) && documentation_write(page, program, summary, &scene);
   description_text = text_in(description);
   documentation_text = text_in(page);
   xmlBufferFree(anonymous);

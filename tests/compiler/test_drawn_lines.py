@@ -7,6 +7,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 import fmu
+from chromium import look_at
 from fmu import ROOT, lagc
 from scripts.library.live_page.description import scene_of
 
@@ -135,10 +136,9 @@ def test_springs_are_coils_without_lines(tmp_path):
     """A <spring> is drawn beside guessed lines; where the author draws lines, it is not drawn twice. A body with equal moments is a ball."""
     (spring,) = lines_of(written(tmp_path, SPRINGS.format("")))
     assert (spring["kind"], spring["from"], spring["to"], spring["guessed"]) == ("spring", "", "ball", "true")
-    icon = ElementTree.parse(tmp_path / "fmi3" / "icon.svg").getroot()
-    points = [one.get("points").split() for one in icon if one.tag.endswith("polygon") and one.get("class") == "solid"]
-    corners = [tuple(map(float, point.split(","))) for point in points[0]]
-    middle = [sum(corner[i] for corner in corners) / len(corners) for i in (0, 1)]
+    points = "view => view.document.querySelector('.sketch .solid').getAttribute('points').split(' ').map(point => point.split(',').map(Number))"
+    [corners] = look_at([tmp_path / "documentation" / "index.html"], tmp_path, [1200], points).values()
+    middle = [(min(corner[i] for corner in corners) + max(corner[i] for corner in corners)) / 2 for i in (0, 1)]
     radii = [math.dist(corner, middle) for corner in corners]
     assert max(radii) == pytest.approx(min(radii), rel=0.01) and max(radii) > 5
     described = lines_of(written(tmp_path, SPRINGS.format('<line kind="rope" from="base" to="ball"/>')))

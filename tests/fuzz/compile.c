@@ -11,9 +11,9 @@
 
 #include <libxml/tree.h>
 
+#include "drawing/icon.h"
 #include "drawing/png.h"
 #include "drawing/svg.h"
-#include "drawing/system_drawing.h"
 #include "page/documentation.h"
 #include "mechanics/motion.h"
 #include "base/memory.h"
@@ -33,12 +33,13 @@ static void write_texts(const struct Program *program, const struct Summary *sum
   code_write(file, program);
   close_text(&code);
   xmlBufferPtr buffer = xmlBufferCreate();
-  struct Drawing drawing = drawing_of(program->model);
-  bool written =
-      model_description_write(buffer, program, "") && documentation_write(buffer, program, summary, &drawing);
-  if (!written || !write_icon(buffer, &drawing)) abort();
+  struct StartScene scene = start_scene_of(program->model);
+  struct Drawing icon = icon_of(&scene);
+  bool written = model_description_write(buffer, program, "") && documentation_write(buffer, program, summary, &scene);
+  if (!written) abort();
   size_t length;
-  png_of(&drawing, &length);
+  svg_of(&icon);
+  png_of(&icon, &length);
   xmlBufferFree(buffer);
 }
 

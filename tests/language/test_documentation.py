@@ -50,7 +50,7 @@ def test_typeset_forms(tmp_path):
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert (result.returncode, result.stderr) == (0, "")
     (page,) = shown([page_of(tmp_path / "out")], tmp_path)
-    assert check(page) == 4 and "<msub><mi>θ</mi><mrow><mn>3</mn></mrow></msub>" in page and page.count("<details>") == 4
+    assert check(page) == 4 and "<msub><mi>θ</mi><mrow><mn>3</mn></mrow></msub>" in page and page.count("<details>") == 5  # one is of the scene
 
 
 def test_forms_of_exponentials(tmp_path):

@@ -41,7 +41,7 @@ def test_the_gallery():
     assert (SITE / "laboratory.html").exists() and 'href="laboratory.html"' in cards
     links = re.findall(r'(?:href|src)="(systems/[^"]*)"', cards)
     assert {link.split("/")[1] for link in links} == set(fmu.all_names())
-    assert cards.count('<svg class="sketch"') == len(fmu.all_names())
+    assert cards.count('<pre class="scene"') == len(fmu.all_names())
     assert [link for link in links if not (SITE / unquote(link)).exists()] == []
     assert list(broken_links()) == []
     fetched, complaints = [], []
