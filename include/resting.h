@@ -1,4 +1,4 @@
-/* Velocities that are exactly 0 at rest (src/runtime/nonsmooth/resting_velocities.c). */
+/* Velocities that are exactly 0 at rest (src/runtime/nonsmooth/rests/resting_velocities.c). */
 #ifndef RESTING_H
 #define RESTING_H
 

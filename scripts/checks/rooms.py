@@ -72,6 +72,7 @@ RUNTIME = Layers(
     src/runtime/nonsmooth
     src/runtime/nonsmooth/contacts
     src/runtime/nonsmooth/planes
+    src/runtime/nonsmooth/rests
     src/runtime/events
     src/runtime/timing
     src/runtime/stepping

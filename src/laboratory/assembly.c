@@ -11,7 +11,7 @@
 #include "algebra/functions.h"
 #include "base/memory.h"
 #include "bounded_functions.h"
-#include "nonsmooth/resting_velocities.h"
+#include "nonsmooth/rests/resting_velocities.h"
 #include "nonsmooth/resolution.h"
 #include "instance/event_laws.h"
 #include "instance/projection.h"

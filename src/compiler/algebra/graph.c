@@ -90,8 +90,8 @@ void graph_work(const struct Graph *graph, size_t steps) {
   graph->cone->work += steps;
 }
 
-bool graph_has_to_save_work(const struct Graph *graph) {
-  return graph->cone->work > WORK_LIMIT / 2;
+size_t graph_work_left(const struct Graph *graph) {
+  return graph->cone->work < WORK_LIMIT ? WORK_LIMIT - graph->cone->work : 0;
 }
 
 _Static_assert(NODE_LIMIT == 4000000 && WORK_LIMIT == 100000000, "the texts of graph_limit() name the limits");

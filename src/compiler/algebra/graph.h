@@ -124,8 +124,8 @@ struct Graph *graph_copy(const struct Graph *graph);
 /* Counts steps of work, each about as long as a visit to a node. The sweeps of algebra/ and the reader call it. */
 void graph_work(const struct Graph *graph, size_t steps);
 
-/* True if half of the steps have been taken: what may be left out, such as shorter forms of equations, is left out. */
-bool graph_has_to_save_work(const struct Graph *graph);
+/* Returns the number of steps up to WORK_LIMIT. */
+size_t graph_work_left(const struct Graph *graph);
 
 /*
  * Returns a text for the limit that was exceeded, such as "more than 4000000 operations"; NULL if none. Then every new

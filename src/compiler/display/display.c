@@ -19,6 +19,9 @@ enum { DEPTH_LIMIT = 60 };
 /* Longest sum, in characters, that is easy to read as a factor, such as 1 - cos(theta). */
 enum { SHORT_SUM = 24 };
 
+/* Steps of graph_work() that the searches for forms take at most, and those that they leave to what follows. */
+enum { SEARCH_WORK = WORK_LIMIT / 10 * 7, RESERVED_WORK = WORK_LIMIT / 20 };
+
 /*
  * Weights of the length of a form. A form without expansion counts 1.4 times, since products of inertia are easier
  * to read when multiplied out. A whole side of an equation that is one product counts 1.25 times.
@@ -112,10 +115,17 @@ static char *text_of_form(struct Display *display, Node node, enum ProductExpans
   return text;
 }
 
+/* True if further searches for forms would take too many steps. */
+static bool has_to_save_work(struct Display *display) {
+  size_t left = graph_work_left(display->graph);
+  if (display->work_left == 0) display->work_left = left;
+  return left < RESERVED_WORK || display->work_left - left > SEARCH_WORK;
+}
+
 /* Returns the shortest of the forms of a node; NULL if all are too large, or their search would take too many steps. */
 static char *shortest_text(struct Display *display, Node node, bool is_whole) {
   static const enum ProductExpansion expansions[] = {EXPAND_QUADRATIC, EXPAND_ALL, EXPAND_NONE};
-  if (graph_has_to_save_work(display->graph)) return NULL;
+  if (has_to_save_work(display)) return NULL;
   Node reduced = simplify_fraction(display->graph, node);
   char *best = NULL;
   double least = INFINITY;

@@ -17,7 +17,8 @@ struct Display {
   const struct NodeNames *names;
   char **known; /* texts of nodes inside of others; NULL if unknown */
   size_t known_count;
-  int depth; /* of texts inside of others */
+  int depth;        /* of texts inside of others */
+  size_t work_left; /* graph_work_left() at the first text; 0 before it */
 };
 
 /* Returns a node of equal value, multiplied out and shortened by addition theorems; the node itself if it is large. */

@@ -6,7 +6,7 @@
 /*
  * Replaces a velocity by an exact 0 while it rests: in the indicators of branches, in assignments of events, in outputs
  * and in rates of states. Constraints keep it at 0 up to rounding, and the sign of a rounding error must decide
- * nothing. The runtime finds which velocities rest (nonsmooth/resting_velocities.c).
+ * nothing. The runtime finds which velocities rest (nonsmooth/rests/resting_velocities.c).
  */
 void replace_resting_velocities(struct Model *model);
 

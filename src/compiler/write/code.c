@@ -23,11 +23,16 @@ static void include_source(FILE *file, const char *name) {
   fprintf(file, "#include \"%s\"\n", name);
 }
 
+/* True if the file stands in the room itself, and in no room inside of it. */
+static bool is_in_room(const char *name, const char *room) {
+  size_t length = strlen(room);
+  return strncmp(name, room, length) == 0 && strrchr(name, '/') == name + length;
+}
+
 /* Includes all files of a room of the runtime: a room is linked as a whole or not at all. */
 static void include_room(FILE *file, const char *room) {
-  size_t length = strlen(room);
   for (const char *const *name = runtime_sources; *name != NULL; name++)
-    if (strncmp(*name, room, length) == 0 && (*name)[length] == '/') include_source(file, *name);
+    if (is_in_room(*name, room)) include_source(file, *name);
 }
 
 static bool has_nonsymmetric_block(const struct Program *program) {
@@ -69,10 +74,14 @@ static void write_runtime(FILE *file, const struct Program *program) {
   if (program->ir_functions[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "support/saddle.c");
   if (has_nonsymmetric_block(program)) include_source(file, "support/nonsymmetric.c");
   if (program->ir_functions[FUNCTION_ACCELERATIONS] != NULL) include_source(file, "methods/projection.c");
-  if (program->ir_functions[FUNCTION_INDICATORS] != NULL) include_room(file, "events");
-  if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "contacts");
-  if (has_planes(switches)) include_room(file, "planes");
-  if (switches->resting_count > 0) include_room(file, "rests");
+  if (program->ir_functions[FUNCTION_INDICATORS] != NULL) {
+    include_room(file, "detection");
+    include_room(file, "nonsmooth");
+    include_room(file, "events");
+  }
+  if (switches->contact_count > 0 || switches->friction_count > 0) include_room(file, "nonsmooth/contacts");
+  if (has_planes(switches)) include_room(file, "nonsmooth/planes");
+  if (switches->resting_count > 0) include_room(file, "nonsmooth/rests");
   if (switching != NULL && switching->timed_count > 0) include_room(file, "timing");
   fputs("#endif\n", file);
 }

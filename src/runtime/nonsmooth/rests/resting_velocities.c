@@ -15,7 +15,7 @@
  * motion stops, the error of integration may leave a small velocity. So a velocity also counts as at rest if it is small
  * and was accelerated until the event.
  */
-#include "nonsmooth/resting_velocities.h"
+#include "nonsmooth/rests/resting_velocities.h"
 
 #include <math.h>
 #include <stdint.h>
