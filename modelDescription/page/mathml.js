@@ -6,7 +6,7 @@
 
 const MATH = '<math display="inline" displaystyle="true">', BREAK = `</math><wbr/>${MATH}`;
 const NARROW = 20; // letters of a part without breaks, which fits on a phone
-const NARROW_CASES = 28; // the same for cases, which would become if(c, a, b)
+const STILL_NARROW = 28; // the same for roots and cases, which would become sqrt(a) and if(c, a, b)
 
 const FUNCTION = /^(?:(?:sin|cos|tan)h?|log|exp|min|max)$/; // other commands without arguments are Greek letters
 const DOTS = { "\\dot": "˙", "\\ddot": "¨" };
@@ -62,7 +62,7 @@ function casesOf(rows) {
   const table = rows.map(([value, when]) => `<mtr>${cell(value.html)}${cell(condition(when))}</mtr>`).join("");
   const nested = rows.reduceRight((other, [value, when]) => (when ? { pieces: callOf("if", when, value, other) } : value), null);
   const width = Math.max(...rows.map(([value, when]) => value.width + (when?.width ?? 0))) + 4;
-  return part(`<mrow><mo form="prefix" stretchy="true">{</mo><mtable>${table}</mtable></mrow>`, width, nested.pieces, NARROW_CASES);
+  return part(`<mrow><mo form="prefix" stretchy="true">{</mo><mtable>${table}</mtable></mrow>`, width, nested.pieces, STILL_NARROW);
 }
 
 class Reader {
@@ -166,7 +166,7 @@ class Reader {
 
   root() {
     const inside = this.group();
-    return part(`<msqrt>${inside.html}</msqrt>`, inside.width + 2, callOf("sqrt", inside));
+    return part(`<msqrt>${inside.html}</msqrt>`, inside.width + 2, callOf("sqrt", inside), STILL_NARROW);
   }
 
   cases() {
