@@ -18,10 +18,15 @@ struct SceneWriter {
   const struct StartScene *start; /* NULL for formulas */
 };
 
+/* Returns 0 for rounding errors of lengths, angles and components of directions. */
+static double without_rounding(double value) {
+  return fabs(value) < 1e-12 ? 0.0 : value;
+}
+
 /* Writes ten digits, which are the same on all platforms; for a drawing four. */
 static void write_rounded(const struct SceneWriter *writer, const char *name, double value) {
   char text[32];
-  snprintf(text, sizeof text, "%.*g", writer->start != NULL ? 4 : 10, fabs(value) < 1e-12 ? 0.0 : value);
+  snprintf(text, sizeof text, "%.*g", writer->start != NULL ? 4 : 10, without_rounding(value));
   write_attribute(writer->xml, name, text);
 }
 
@@ -35,7 +40,7 @@ static void write_formula(const struct SceneWriter *writer, const char *name, No
 static void write_components(const struct SceneWriter *writer, const char *name, const double *values, int count) {
   struct TextStream text;
   FILE *file = open_text(&text);
-  for (int i = 0; i < count; i++) fprintf(file, "%s%.4g", i > 0 ? " " : "", fabs(values[i]) < 1e-12 ? 0.0 : values[i]);
+  for (int i = 0; i < count; i++) fprintf(file, "%s%.4g", i > 0 ? " " : "", without_rounding(values[i]));
   write_attribute(writer->xml, name, close_text(&text));
 }
 

@@ -1,6 +1,5 @@
 /* Formulas, in the infix form of algebra/formula.h, as LaTeX: the one place with rules of typesetting. */
-#ifndef PAGE_LATEX_H
-#define PAGE_LATEX_H
+#pragma once
 
 #include "model/model.h"
 
@@ -14,5 +13,3 @@ char *latex_of(const struct Model *model, const char *text);
 
 /* Returns an equation as LaTeX; "" if it is too long. */
 char *latex_of_equation(const struct Model *model, const char *left, const char *right);
-
-#endif

@@ -129,14 +129,16 @@ static bool find_mark(const struct StartScene *scene, double *const points[3], s
 
 static void find_marks(const struct StartScene *scene, struct Measures *measures) {
   const struct VariableList *coordinates = &scene->model->coordinates;
-  for (size_t i = 0; i < coordinates->count && coordinates->count <= MOST_MARKS; i++) {
-    double *points[3];
-    for (int k = 0; k < 3; k++) points[k] = points_after(scene, i, k * CHANGE);
+  if (coordinates->count == 0 || coordinates->count > MOST_MARKS) return;
+  double *points[3] = {points_after(scene, 0, 0.0)};
+  for (size_t i = 0; i < coordinates->count; i++) {
+    for (int k = 1; k < 3; k++) points[k] = points_after(scene, i, k * CHANGE);
     struct CoordinateMark mark = {.name = coordinates->items[i].name,
                                   .start = scene->values[coordinates->items[i].node]};
     if (find_mark(scene, points, &mark)) APPEND(measures->marks, measures->mark_count, mark);
-    for (int k = 0; k < 3; k++) release(points[k]);
+    for (int k = 1; k < 3; k++) release(points[k]);
   }
+  release(points[0]);
 }
 
 /* Removes the names of parameters that are not the lengths for these values of the symbols. */

@@ -152,10 +152,11 @@ static bool write_buffers(const struct Program *program, const struct Summary *s
 static void add_icons(const struct Program *program, const struct StartScene *scene, struct FileContent *contents) {
   struct Drawing icon = icon_of(scene), flange = flange_icon();
   contents[ICON] = text_content(svg_of(&icon));
-  contents[FLANGE_ICON] = text_content(svg_of(&flange));
   contents[PICTURE].bytes = (const char *)png_of(&icon, &contents[PICTURE].length);
+  contents[FLANGE_PICTURE].bytes = contents[FLANGE_ICON].bytes = NULL;
+  if (fmi3_terminal_count(program) == 0) return;
+  contents[FLANGE_ICON] = text_content(svg_of(&flange));
   contents[FLANGE_PICTURE].bytes = (const char *)png_of(&flange, &contents[FLANGE_PICTURE].length);
-  if (fmi3_terminal_count(program) == 0) contents[FLANGE_PICTURE].bytes = contents[FLANGE_ICON].bytes = NULL;
 }
 
 void output_write(const struct Program *program, const struct Summary *summary, const char *directory,
