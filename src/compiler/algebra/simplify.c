@@ -1,5 +1,6 @@
 #include "algebra/simplify.h"
 
+#include <float.h>
 #include <math.h>
 
 #include "algebra/functions.h"
@@ -258,6 +259,12 @@ static bool is_square_of(const struct Graph *graph, const struct SumTerm *term, 
   return *operation == SINE || *operation == COSINE;
 }
 
+/* Returns a + b; 0 where they cancel but for their rounding, as weights of a quadrature do. */
+static double sum_of_coefficients(double a, double b) {
+  double sum = a + b;
+  return fabs(sum) > 32.0 * DBL_EPSILON * fabs(a) ? sum : 0.0;
+}
+
 /* Combines a + b into one term, by equal factors, sin^2 + cos^2 = 1 or 1 - sin^2 = cos^2. False if none applies. */
 static bool combine(struct Graph *graph, struct SumTerm a, struct SumTerm b, Node *result) {
   if (a.factor_count < 0 || b.factor_count < 0) return false;
@@ -268,7 +275,7 @@ static bool combine(struct Graph *graph, struct SumTerm a, struct SumTerm b, Nod
   bool a_square = is_square_of(graph, &a, &first, &u), b_square = is_square_of(graph, &b, &second, &w);
   if (a.factor_count == 0 && b.factor_count == 0) {
     rest = product_of(graph, common, count);
-    *result = scale(graph, a.coefficient + b.coefficient, rest);
+    *result = scale(graph, sum_of_coefficients(a.coefficient, b.coefficient), rest);
     return true;
   }
   bool is_one_each = a.factor_count == 1 && b.factor_count == 1 && a.coefficient == b.coefficient;

@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "algebra/simplify.h"
+#include "base/memory.h"
 
 /* Longer sums are left as they are: each step compares all pairs of terms for all pairs of angles. */
 enum { LENGTH_LIMIT = 80, ANGLE_LIMIT = 8 };
@@ -49,10 +50,19 @@ static void multiply_by_function(struct Atoms *atoms, struct Term *term, enum Op
   if (base != ONE) term->exponents[atom_index(atoms, base)] += 1.0;
 }
 
+/* Returns a + sign*b with both sums multiplied out, so that what they share cancels. */
+static Node sum_of_angles(const struct Atoms *atoms, Node a, double sign, Node b) {
+  Node sum = add(atoms->graph, a, scale(atoms->graph, sign, b));
+  struct Atoms own = {.graph = atoms->graph, .names = atoms->names, .whole = sum, .expansion = EXPAND_ALL};
+  struct Terms terms = terms_of_expression(&own, sum);
+  if (!own.is_full) sum = node_of_terms(&own, &terms);
+  release(terms.items);
+  return sum;
+}
+
 /* Replaces term i and its counterpart, by sines and cosines of the angles a and b. */
 static bool join_pair(struct Atoms *atoms, struct Terms *terms, size_t i, const struct Angle *a,
                       const struct Angle *b) {
-  struct Graph *graph = atoms->graph;
   struct Term rest = terms->items[i];
   bool of_sines = rest.exponents[a->sine] >= 1.0 && rest.exponents[b->sine] >= 1.0;
   bool is_mixed = rest.exponents[a->sine] >= 1.0 && rest.exponents[b->cosine] >= 1.0;
@@ -69,9 +79,8 @@ static bool join_pair(struct Atoms *atoms, struct Terms *terms, size_t i, const 
   if (of_sines) rest.coefficient = other;
   bool is_swapped = !is_sum && a->node > b->node;
   if (is_swapped && !of_sines) rest.coefficient = -rest.coefficient;
-  Node angle = is_sum       ? add(graph, a->node, b->node)
-               : is_swapped ? subtract(graph, b->node, a->node)
-                            : subtract(graph, a->node, b->node);
+  Node angle = is_swapped ? sum_of_angles(atoms, b->node, -1.0, a->node)
+                          : sum_of_angles(atoms, a->node, is_sum ? 1.0 : -1.0, b->node);
   multiply_by_function(atoms, &rest, of_sines ? COSINE : SINE, angle);
   remove_term(terms, i > j ? i : j);
   remove_term(terms, i > j ? j : i);

@@ -159,20 +159,12 @@ static const char *text_inside(struct Display *display, Node node) {
 }
 
 Node display_node(struct Display *display, Node node) {
-  struct Graph *graph = display->graph;
-  struct Atoms atoms = {.graph = graph, .names = display->names, .whole = node, .expansion = EXPAND_ALL};
+  struct Atoms atoms = {.graph = display->graph, .names = display->names, .whole = node, .expansion = EXPAND_ALL};
   struct Terms terms = terms_of_expression(&atoms, node);
   apply_addition_theorems(&atoms, &terms);
-  Node sum = ZERO;
-  for (size_t i = 0; i < terms.count && !atoms.is_full; i++) {
-    Node product = ONE;
-    for (int k = 0; k < atoms.count; k++)
-      if (terms.items[i].exponents[k] != 0.0)
-        product = multiply(graph, product, power_number(graph, atoms.nodes[k], terms.items[i].exponents[k]));
-    sum = add(graph, sum, scale(graph, terms.items[i].coefficient, product));
-  }
+  Node sum = atoms.is_full ? node : node_of_terms(&atoms, &terms);
   release(terms.items);
-  return atoms.is_full ? node : sum;
+  return sum;
 }
 
 char *display_text(struct Display *display, Node node) {

@@ -5,8 +5,11 @@
 
 #include "base/memory.h"
 
-/* Largest denominator of coefficients that are shown as ratios of whole numbers. */
-enum { DENOMINATOR_LIMIT = 45 };
+/*
+ * A coefficient is shown as a ratio of whole numbers if one of them is at most RATIO_LIMIT, the other at most 10^7, and
+ * the decimal number has more than DIGIT_LIMIT characters.
+ */
+enum { RATIO_LIMIT = 45, WHOLE_LIMIT = 10000000, DIGIT_LIMIT = 8 };
 
 /* True if one of the characters stands outside of parentheses. */
 static bool has_outside(const char *text, const char *characters) {
@@ -63,23 +66,26 @@ static void append_factor(struct FactorList *list, char *factor) {
   list->count++;
 }
 
+/* True for a whole number but for rounding. */
+static bool is_nearly_whole(double number) {
+  double whole = round(number);
+  return whole >= 1.0 && whole <= WHOLE_LIMIT && fabs(number - whole) <= 1e-14 * whole;
+}
+
 /* Splits a number into a numerator and a denominator, 1 if there is none. */
 static void split_number(double number, double *above, double *below) {
-  double inverse = 1.0 / number;
   *above = number;
   *below = 1.0;
-  if (number < 1.0 && inverse == floor(inverse)) {
-    *above = 1.0;
-    *below = inverse;
-    return;
-  }
   char text[32];
-  snprintf(text, sizeof text, "%.15g", number);
-  for (int i = 3; i <= DENOMINATOR_LIMIT && strlen(text) > 8; i++) {
-    double whole = round(number * i);
-    if (whole < 1.0 || fabs(number * i - whole) > 1e-14 * whole) continue;
-    *above = whole;
-    *below = i;
+  bool is_long = snprintf(text, sizeof text, "%.15g", number) > DIGIT_LIMIT;
+  for (int i = 1; i <= (is_long ? RATIO_LIMIT : 1); i++) {
+    double whole = number * i, inverse = i / number;
+    bool is_ratio = number >= 1.0 ? i > 1 && is_nearly_whole(whole)
+                    : is_long     ? is_nearly_whole(inverse)
+                                  : inverse == floor(inverse);
+    if (!is_ratio) continue;
+    *above = number < 1.0 ? i : round(whole);
+    *below = number < 1.0 ? round(inverse) : i;
     return;
   }
 }

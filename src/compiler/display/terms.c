@@ -12,7 +12,7 @@
  */
 enum { VISIT_LIMIT = 4000, DEPTH_LIMIT = 250, POWER_LIMIT = 4 };
 
-/* Coefficients whose sum is smaller than this share of them cancel but for rounding. */
+/* Coefficients whose sum is smaller than this share of the largest partial sum cancel but for rounding. */
 static const double cancellation = 1e-14;
 
 const char *displayed_name(const struct Atoms *atoms, Node node) {
@@ -37,14 +37,17 @@ bool have_equal_atoms(const struct Term *a, const struct Term *b) {
   return true;
 }
 
+static double magnitude_of(const struct Term *term) {
+  return fmax(term->magnitude, fabs(term->coefficient));
+}
+
 void add_to_terms(struct Atoms *atoms, struct Terms *terms, const struct Term *term) {
   for (size_t i = 0; i < terms->count; i++) {
     struct Term *other = &terms->items[i];
     if (!have_equal_atoms(other, term)) continue;
-    double sum = other->coefficient + term->coefficient;
-    bool cancels = fabs(sum) <= cancellation * fabs(term->coefficient);
-    if (cancels) *other = terms->items[--terms->count];
-    else other->coefficient = sum;
+    other->magnitude = fmax(magnitude_of(other), magnitude_of(term));
+    other->coefficient += term->coefficient;
+    if (fabs(other->coefficient) <= cancellation * other->magnitude) *other = terms->items[--terms->count];
     return;
   }
   if (term->coefficient == 0.0) return;
@@ -72,6 +75,7 @@ static struct Terms product_of_terms(struct Atoms *atoms, const struct Terms *a,
   for (size_t i = 0; i < a->count && !atoms->is_full; i++)
     for (size_t j = 0; j < b->count && !atoms->is_full; j++) {
       struct Term term = a->items[i];
+      term.magnitude = magnitude_of(&term) * magnitude_of(&b->items[j]);
       term.coefficient *= b->items[j].coefficient;
       for (int k = 0; k < ATOM_ROOM; k++) term.exponents[k] += b->items[j].exponents[k];
       add_to_terms(atoms, &product, &term);
@@ -208,4 +212,17 @@ struct Terms terms_of_expression(struct Atoms *atoms, Node node) {
   struct Terms terms = terms_of_node(atoms, node);
   atoms->depth--;
   return terms;
+}
+
+Node node_of_terms(const struct Atoms *atoms, const struct Terms *terms) {
+  struct Graph *graph = atoms->graph;
+  Node sum = ZERO;
+  for (size_t i = 0; i < terms->count; i++) {
+    Node product = ONE;
+    for (int k = 0; k < atoms->count; k++)
+      if (terms->items[i].exponents[k] != 0.0)
+        product = multiply(graph, product, power_number(graph, atoms->nodes[k], terms->items[i].exponents[k]));
+    sum = add(graph, sum, scale(graph, terms->items[i].coefficient, product));
+  }
+  return sum;
 }

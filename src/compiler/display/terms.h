@@ -18,6 +18,8 @@ enum ProductExpansion {
 
 struct Term {
   double coefficient;
+  double
+      magnitude; /* the largest partial sum of which the coefficient is what remained; 0 for the coefficient itself */
   double exponents[ATOM_ROOM];
 };
 
@@ -44,10 +46,13 @@ const char *displayed_name(const struct Atoms *atoms, Node node);
 /* Returns the terms of a node; they have no meaning if atoms->is_full. */
 struct Terms terms_of_expression(struct Atoms *atoms, Node node);
 
+/* Returns the sum of the terms as a node. */
+Node node_of_terms(const struct Atoms *atoms, const struct Terms *terms);
+
 /* Returns the index of an atom, which is added if it is new. */
 int atom_index(struct Atoms *atoms, Node node);
 
-/* Adds a term to a sum; a term with the same atoms absorbs it. */
+/* Adds a term to a sum; a term with the same atoms absorbs it. Coefficients that cancel but for rounding leave none. */
 void add_to_terms(struct Atoms *atoms, struct Terms *terms, const struct Term *term);
 
 bool have_equal_atoms(const struct Term *a, const struct Term *b);
