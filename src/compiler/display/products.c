@@ -6,8 +6,8 @@
 #include "base/memory.h"
 
 /*
- * A coefficient is shown as a ratio of whole numbers if one of them is at most RATIO_LIMIT, the other at most 10^7, and
- * the decimal number has more than DIGIT_LIMIT characters.
+ * A coefficient with more characters than DIGIT_LIMIT is shown as a ratio of whole numbers if there is one. One of both
+ * is at most RATIO_LIMIT, the other at most WHOLE_LIMIT.
  */
 enum { RATIO_LIMIT = 45, WHOLE_LIMIT = 10000000, DIGIT_LIMIT = 8 };
 
