@@ -19,7 +19,7 @@ struct Derivation {
   struct Page *page;
   const struct Model *model;
   const struct Equations *equations;
-  const char *lagrangian_name, *reaction_name; /* L and R, or words if the system has these names */
+  const char *lagrangian_name, *reaction_name, *force_name; /* L, R and Q, or words if the system has these */
   Node lagrangian, *momentum, *gradient, *momentum_rate, *force;
 };
 
@@ -29,6 +29,11 @@ static const char *coordinate_name(const struct Derivation *derivation, size_t i
 
 static const char *velocity_name(const struct Derivation *derivation, size_t i) {
   return derivation->model->velocities.items[i].name;
+}
+
+/* Returns the name of the generalized force along a coordinate. */
+static char *force_name(const struct Derivation *derivation, size_t i) {
+  return format_text("%s[%s]", derivation->force_name, coordinate_name(derivation, i));
 }
 
 /* Finds dL/dv, dL/dq, d/dt dL/dv and the generalized forces Q, which include those of the dissipation. */
@@ -41,6 +46,7 @@ static struct Derivation derivation_of(struct Page *page) {
                                   .equations = page->equations,
                                   .lagrangian_name = page_symbol(model, "L", "Lagrangian"),
                                   .reaction_name = page_symbol(model, "R", "reaction"),
+                                  .force_name = page_symbol(model, "Q", "force"),
                                   .momentum = allocate(n, sizeof(Node)),
                                   .gradient = allocate(n, sizeof(Node)),
                                   .momentum_rate = allocate(n, sizeof(Node)),
@@ -134,10 +140,10 @@ static void write_lagrange(const struct Derivation *derivation) {
     char *left = format_text("der(diff(%s, %s)) - diff(%s, %s)", name, velocity_name(derivation, i), name,
                              coordinate_name(derivation, i));
     if (constrained) left = format_text("%s + %s", left, derivation->reaction_name);
-    page_step_texts(page, left, has_forces ? format_text("Q.%s", coordinate_name(derivation, i)) : "0");
+    page_step_texts(page, left, has_forces ? force_name(derivation, i) : "0");
   }
   for (size_t i = 0; i < derivation->equations->count && has_forces; i++)
-    page_step_equation(page, format_text("Q.%s", coordinate_name(derivation, i)), derivation->force[i]);
+    page_step_equation(page, force_name(derivation, i), derivation->force[i]);
   page_paragraph(page, "Carried out, they are the equations of motion above.");
   if (constrained)
     page_paragraph(page,
@@ -244,7 +250,9 @@ static void write_conserved(const struct Derivation *derivation) {
   for (size_t i = 0; i < derivation->equations->count; i++) {
     if (!is_cyclic(derivation, i)) continue;
     count++;
-    page_step_equation(page, format_text("p.%s", coordinate_name(derivation, i)), derivation->momentum[i]);
+    page_step_equation(
+        page, format_text("%s[%s]", page_symbol(derivation->model, "p", "momentum"), coordinate_name(derivation, i)),
+        derivation->momentum[i]);
   }
   if (count == 0) page_paragraph(page, "Neither the energy nor the momentum of a coordinate is constant.");
   else if (page->model->switches.event_count + page->model->switches.contact_count > 0)

@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "page.h"
 
 /* Longest side of an equation, in characters, and most nested parentheses, which bound the memory and the stack. */
 enum { SIDE_LIMIT = 4000, NESTING_LIMIT = 100 };
@@ -110,23 +111,70 @@ static bool is_multiplier(const struct Model *model, const char *name) {
   return false;
 }
 
+/* Returns the length of a text in brackets, which may contain others. */
+static size_t bracket_length(const char *text) {
+  size_t length = 0;
+  int depth = 0;
+  do depth += (text[length] == '[') - (text[length] == ']');
+  while (text[++length] != '\0' && depth > 0);
+  return length;
+}
+
+/* Returns the last point of a name outside of brackets; NULL if there is none. */
+static const char *last_point(const char *name) {
+  const char *last = NULL;
+  for (; *name != '\0'; name += *name == '[' ? bracket_length(name) : 1)
+    if (*name == '.') last = name;
+  return last;
+}
+
+/* Returns the name of the coordinate of which a velocity has the name with one letter before it: x of vx; else NULL. */
+static const char *coordinate_of(const struct Model *model, const char *velocity) {
+  for (size_t i = 0; i < model->velocities.count; i++)
+    if (strcmp(model->velocities.items[i].name, velocity) == 0) {
+      const char *coordinate = model->coordinates.items[i].name;
+      return strcmp(velocity + 1, coordinate) == 0 ? coordinate : NULL;
+    }
+  return NULL;
+}
+
+static char *symbol(const struct Model *model, const char *name, int dots);
+
+/* Returns the length of a name before the digits at its end. */
+static size_t length_without_number(const char *word, size_t length) {
+  size_t digits = length;
+  while (digits > 0 && isdigit((unsigned char)word[digits - 1])) digits--;
+  return digits > 0 && word[digits - 1] == '_' ? length : digits;
+}
+
+/* Appends the indices in brackets: numbers, and names such as theta1 in Q[theta1]. */
+static void append_bracket(const struct Model *model, char **indices, const char *bracket) {
+  size_t length = bracket_length(bracket);
+  const char *inside = part_of(bracket + 1, length - 2);
+  char *index = isdigit((unsigned char)*inside) ? copy_text(inside) : symbol(model, inside, 0);
+  *indices = *indices == NULL ? index : format_text("%s, %s", *indices, index);
+}
+
 /*
  * Returns a name as a base with dots, and its indices: theta1, theta[1] and omegaCoupler become Greek letters with an
- * index, and x_end gets one too. The part of the system that a name belongs to is the last index. The force of a
- * constraint is lambda, and another loop.force is F, both with the name of the loop.
+ * index, and x_end gets one too; the velocity vx of x is v with the index x. The part of the system that a name belongs
+ * to is the last index. The force of a constraint is lambda, and another loop.force is F, both with the name of the loop.
  */
 static char *symbol(const struct Model *model, const char *name, int dots) {
-  const char *point = strrchr(name, '.'), *word = point != NULL ? point + 1 : name;
-  size_t length = strcspn(word, "["), digits = length;
-  bool has_bracket = word[length] == '[';
-  while (digits > 0 && isdigit((unsigned char)word[digits - 1])) digits--;
-  if (has_bracket || (digits > 0 && word[digits - 1] == '_')) digits = length;
+  const char *point = last_point(name), *word = point != NULL ? point + 1 : name,
+             *coordinate = coordinate_of(model, name);
+  size_t length = strcspn(word, "["), digits = word[length] == '[' ? length : length_without_number(word, length);
   size_t base = base_length(word, digits), after = base + (base < digits && word[base] == '_');
   char *indices = NULL;
-  append_index(&indices, word + after, digits - after);
-  append_index(&indices, word + digits, length - digits);
-  for (const char *at = word + length; *at == '['; at += strcspn(at, "]") + 1)
-    append_index(&indices, at + 1, strcspn(at + 1, "]"));
+  if (strcmp(name, "time") == 0) return copy_text(page_symbol(model, "t", "\\mathrm{time}"));
+  if (coordinate != NULL) {
+    indices = symbol(model, coordinate, 0);
+    base = 1;
+  } else {
+    append_index(&indices, word + after, digits - after);
+    append_index(&indices, word + digits, length - digits);
+    for (const char *at = word + length; *at == '['; at += bracket_length(at)) append_bracket(model, &indices, at);
+  }
   if (point != NULL) append_index(&indices, name, (size_t)(point - name));
   if (point != NULL && strcmp(word, "force") == 0) {
     word = is_multiplier(model, name) ? "lambda" : "F";
@@ -256,7 +304,7 @@ static size_t name_length(const char *text) {
   size_t length = 0;
   while (isalnum((unsigned char)text[length]) || text[length] == '_' || text[length] == '[' ||
          (text[length] == '.' && text[length + 1] != '.'))
-    length += text[length] == '[' ? strcspn(text + length, "]") + 1 : 1;
+    length += text[length] == '[' ? bracket_length(text + length) : 1;
   return length;
 }
 

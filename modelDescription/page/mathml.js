@@ -5,8 +5,8 @@
 // in pieces, as a <math> element cannot contain a break. Reads each character once.
 
 const MATH = '<math display="inline" displaystyle="true">', BREAK = `</math><wbr/>${MATH}`;
-const NARROW = 20; // letters of a part without breaks, which fits on a phone
-const STILL_NARROW = 28; // the same for roots and cases, which would become sqrt(a) and if(c, a, b)
+const NARROW = Math.max(20, Math.min(48, innerWidth / 28)); // letters of a part without breaks: 20 fit on a phone
+const STILL_NARROW = NARROW + 8; // the same for roots and cases, which would become sqrt(a) and if(c, a, b)
 
 const FUNCTION = /^(?:(?:sin|cos|tan)h?|log|exp|min|max)$/; // other commands without arguments are Greek letters
 const DOTS = { "\\dot": "˙", "\\ddot": "¨" };
@@ -23,7 +23,7 @@ const ENDS = new Set([undefined, "}", ")", "\\right)", "\\right|", "&", "\\\\", 
 const part = (html, width, wide = html, limit = NARROW) => ({ html, width, pieces: width <= limit ? html : wide });
 
 const sumOf = numbers => numbers.reduce((sum, number) => sum + number, 0);
-const slices = html => html.replace(/<[^>]*>/g, "").match(new RegExp(`.{1,${NARROW}}`, "g")).map(text => `<mi>${text}</mi>`).join(BREAK);
+const slices = html => html.replace(/<[^>]*>/g, "").match(new RegExp(`.{1,${Math.floor(NARROW)}}`, "g")).map(text => `<mi>${text}</mi>`).join(BREAK);
 const letters = (html, width) => part(html, width, slices(html));
 const word = text => letters(`<mi mathvariant="normal">${text}</mi>`, text.length);
 

@@ -9,8 +9,8 @@ static const char *balance_of(const struct Model *model, bool autonomous) {
     return "totalEnergy changes by nonConservativeWork alone, which includes the work of what moves states and "
            "constraints: its derivative is P.";
   if (model->prescribed.constraint != NULL)
-    return "A constraint depends on time or inputs: its force does work, so that totalEnergy is not constant even "
-           "without other forces.";
+    return "A constraint prescribes a motion: its force does work, so that totalEnergy is not constant even without "
+           "other forces.";
   if (!model->energies.has_prescribed && autonomous)
     return model->forces.any
                ? "totalEnergy changes by the work of the non-conservative forces alone: its derivative is P."

@@ -1,10 +1,11 @@
 // Draws the start scene of a system, see modelDescription/scene.h, as SVG with labels: masses, lengths, coordinates, axes and a scale. Parts
 // are drawn from the back to the front (painter's algorithm). Lengths on the picture are in pixels. The script is short, as each FMU has it.
 
-const WIDTH = 360, HEIGHT = 300, MARGIN = 40, FOOT = 50; // of a picture; FOOT: for the axes and the scale below it
+const WIDTH = 360, HEIGHT = 300, MARGIN = 40, FOOT = 62; // of a picture; FOOT: for the axes and the scale below it
 const MOST_LABELS = 8; // bodies up to which each has a label
 const FAR = 1e3; // sizes of the system, to bring a part to the front or to the back
-const BESIDE = [[8, 0], [-8, 0]], ABOVE = [[0, -13], [0, 14]], DIAGONAL = [[9, -13], [-9, 14], [-9, -13], [9, 14]]; // places of labels
+const BESIDE = [[1, 0], [-1, 0]], ABOVE = [[0, -1], [0, 1]], DIAGONAL = [[0.7, -0.7], [-0.7, 0.7], [-0.7, -0.7], [0.7, 0.7]]; // directions of labels
+const LABEL_HEIGHT = 15, DISTANCES = [2, 8, 16, 26]; // of a label from what it names
 const AXES = ["x", "y", "z"];
 
 const numbersOf = text => text.split(" ").map(Number);
@@ -142,7 +143,7 @@ class Sketch extends Geometry {
     super(root);
     [this.right, this.up] = ["right", "up"].map(name => numbersOf(root.getAttribute(name)));
     const hasLabels = typeset !== undefined;
-    Object.assign(this, { container, typeset, labels: [], arcs: 0, svg: svgElement("svg"), outwards: cross(this.right, this.up), isInSpace: [...this.right, ...this.up].filter(Boolean).length > 2 });
+    Object.assign(this, { container, typeset, labels: [], drawn: [], arcs: 0, svg: svgElement("svg"), outwards: cross(this.right, this.up), isInSpace: [...this.right, ...this.up].filter(Boolean).length > 2 });
     const points = this.points(add(this.right, this.up)), limits = [this.right, this.up].map(way => [Math.min, Math.max].map(limit => limit(...points.map(point => dot(point, way)))));
     const [wide, high] = limits.map(([least, most]) => most - least), isBlock = this.elements.every(({ tag }) => ["input", "output"].includes(tag));
     this.centre = limits.map(limit => (limit[0] + limit[1]) / 2);
@@ -169,6 +170,7 @@ class Sketch extends Geometry {
   }
 
   path(look, points, color) {
+    points.slice(1).forEach((to, k) => this.drawn.push(...range(25, i => onLine([points[k], to], i / 25))));
     this.add("polyline", look, { points: points.map(point => point.map(x => x.toFixed(1))).join(" "), style: color ? `color: ${color}` : "" });
   }
 
@@ -186,16 +188,20 @@ class Sketch extends Geometry {
     this.path(look, [onLine(last, share, 4), last[1], onLine(last, share, -4)]);
   }
 
-  // Writes a label at the first free one of several places beside a point.
-  label(name, at, places) {
-    const width = 8 * name.length + 8, span = document.createElement("span"), isNear = (a, b) => Math.abs(2 * (a[0] - b[0]) + a[2] - b[2]) < a[2] + b[2] && Math.abs(a[1] - b[1]) < 15;
-    const boxes = places.map(([x, y]) => [at[0] + (x > 0 ? x : x < 0 ? x - width : -width / 2), at[1] + y - 9, width]);
-    const box = boxes.find(one => one[0] > 0 && one[0] + width < WIDTH && !this.labels.some(other => isNear(one, other)));
-    if (!this.typeset || !box) return;
+  // Writes a label beside a point, where it covers least. directions: those to prefer.
+  label(name, at, directions, distances = DISTANCES) {
+    if (!this.typeset) return;
+    const span = document.createElement("span"), half = [0, LABEL_HEIGHT / 2];
     span.innerHTML = /^\d/.test(name) ? name : this.typeset(name);
-    span.style.cssText = `left:${(100 * box[0]) / WIDTH}%;top:${(100 * box[1]) / this.whole}%`;
     this.container.append(span);
-    this.labels.push(box);
+    half[0] = (span.offsetWidth || 8 * name.length) / 2;
+    const overlap = (a, b, reach) => a.every((x, k) => Math.abs(x - b[k]) < reach[k]), isInside = ([x, y]) => x > half[0] && x + half[0] < WIDTH && y > 0 && y < this.whole;
+    const places = distances.flatMap(distance => [...directions, ...DIAGONAL, ...BESIDE, ...ABOVE].map(way => at.map((x, k) => x + way[k] * (half[k] + distance))));
+    const isFree = place => isInside(place) && !this.labels.some(other => overlap(place, other.place, add(add(half, other.half), [8, 0])));
+    const costs = places.map((place, i) => (isFree(place) ? this.drawn.filter(point => overlap(place, point, half)).length + 0.3 * i : Infinity)), place = places[costs.indexOf(Math.min(...costs))];
+    if (!isFree(place)) return span.remove();
+    span.style.cssText = `left:${(100 * (place[0] - half[0])) / WIDTH}%;top:${(100 * (place[1] - half[1])) / this.whole}%`;
+    this.labels.push({ place, half });
   }
 
   // Draws the outline of a solid, and the faces towards the viewer.
@@ -278,23 +284,24 @@ class Sketch extends Geometry {
 
   drawLabels() {
     const masses = this.objects.filter(({ mass }) => mass > 0);
-    for (const coordinate of this.of("coordinate")) this.drawCoordinate(coordinate);
-    if (masses.length <= MOST_LABELS)
-      for (const { name, label } of masses) this.label(/^[A-Za-z_][\w.[\]*^]{0,13}$/.test(label) ? label : name, this.seen(this.position(name)), [[12, -12], [12, 12], [-12, -12], [-12, 12]]);
-    for (const line of this.of("line").filter(({ label }) => label)) {
-      const ends = this.ends(line).map(this.seen), [x, y] = minus(onLine(ends, 0, 12), ends[0]);
-      this.label(line.label, onLine(ends, 0.5), [[x, y], [-x, -y]]);
-    }
+    const coordinates = this.of("coordinate").flatMap(coordinate => this.drawCoordinate(coordinate) ?? []);
     this.drawScale();
+    for (const [name, at, directions] of coordinates) this.label(name, at, directions);
+    if (masses.length <= MOST_LABELS)
+      for (const { name, label } of masses) this.label(/^[A-Za-z_][\w.[\]*^]{0,13}$/.test(label) ? label : name, this.seen(this.position(name)), DIAGONAL, DISTANCES.slice(1));
+    for (const line of this.of("line").filter(({ label }) => label)) {
+      const ends = this.ends(line).map(this.seen), across = minus(onLine(ends, 0, 1), ends[0]);
+      this.label(line.label, onLine(ends, 0.5), [across, across.map(x => -x)]);
+    }
   }
 
-  // Draws a coordinate as an arrow from 0 to its value, or in its positive direction if that is short.
+  // Draws a coordinate as an arrow from 0 to its value, or in its positive direction if that is short. Returns the label that belongs to it.
   drawCoordinate({ name, start, from, to, axis, along }) {
     const ends = [from, to].map(numbersOf), points = (axis ? this.arc(...ends, numbersOf(axis), start) : this.shift(ends, numbersOf(along))).map(this.seen);
-    const [x, y] = minus(points.at(-1), points[0]), isFlat = !axis && Math.abs(x) > Math.abs(y);
-    if (Math.hypot(x, y) < 5) return;
+    const [x, y] = minus(points.at(-1), points[0]), middle = points[points.length >> 1], out = minus(middle, this.seen(ends[0])), length = Math.hypot(...out);
+    if (Math.hypot(x, y) < 5) return undefined;
     this.arrow("mark", points);
-    this.label(name, points[points.length >> 1], isFlat ? [...ABOVE, ...BESIDE, ...DIAGONAL] : [...BESIDE, ...ABOVE, ...DIAGONAL]);
+    return [[name, middle, axis && length > 1 ? [out.map(part => part / length)] : Math.abs(x) > Math.abs(y) ? ABOVE : BESIDE]];
   }
 
   shift([from, to], along) {
@@ -313,17 +320,17 @@ class Sketch extends Geometry {
   // Draws the axes, the direction of gravity, and a length of 1, 2 or 5 times a power of ten.
   drawScale() {
     const limit = 90 / this.scale, power = 10 ** Math.floor(Math.log10(limit)), length = [5, 2, 1].find(factor => factor * power <= limit) * power;
-    const origin = [40, this.height + 34], end = [WIDTH - 14, this.height + 34], begin = add(end, [-length * this.scale, 0]), [gravity] = this.of("gravity");
+    const origin = [40, this.height + 46], end = [WIDTH - 14, this.height + 46], begin = add(end, [-length * this.scale, 0]), [gravity] = this.of("gravity");
     const direction = (at, way, name) => {
       const [x, y] = [dot(way, this.right), -dot(way, this.up)].map(part => (24 * part) / (Math.hypot(...way) || 1));
       if (Math.hypot(x, y) < 4) return;
       this.arrow("axis", [at, add(at, [x, y])]);
-      this.label(name, add(at, [1.4 * x, 1.4 * y]), [[0, 0]]);
+      this.label(name, add(at, [1.4 * x, 1.4 * y]), [[0, 0]], [0]);
     };
     AXES.forEach((axis, k) => direction(origin, unitAlong(k), axis));
     if (gravity) direction(add(origin, [56, -26]), this.vector(gravity), "g");
     this.path("axis", [add(begin, [0, -3]), begin, end, add(end, [0, -3])]);
-    this.label(`${Number(length.toPrecision(1))} m`, middleOf(begin, end), [[0, -9]]);
+    this.label(`${Number(length.toPrecision(1))} m`, middleOf(begin, end), ABOVE, [1]);
   }
 
   // Draws a system without objects as a block with its inputs and outputs.
@@ -333,7 +340,7 @@ class Sketch extends Geometry {
       this.of(tag).slice(0, 7).forEach(({ name }, i, { length }) => {
         const ends = [from, from + 40].map(right => [right, 10 + (130 * (i + 0.5)) / length]);
         this.arrow("link", ends);
-        this.label(name, ends[sign > 0 ? 1 : 0], [[6 * sign, 0]]);
+        this.label(name, ends[sign > 0 ? 1 : 0], [[sign, 0]], [3]);
       });
   }
 }

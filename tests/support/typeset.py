@@ -59,12 +59,13 @@ def symbol(name):
     return re.sub(r"\W", "_", "_".join(filter(None, [word, number, bracket, *part])))
 
 
-def plain(text):
-    """Rewrite the text with the names that infix() gives."""
+def plain(text, symbols):
+    """Rewrite the text with the names that infix() gives. symbols: those of names that other names decide on."""
+    symbol_of = lambda found: symbols.get(found[1]) or symbol(found[1])
     text = re.sub(r"\bder\(", "der ", re.sub(r"der\(der\(([\w.\[\]]+)\)\)", r"der_der_<\1>", text))
     text = re.sub(r"der ([\w.\[\]]+)\)", r"der_<\1>", text)
-    text = re.sub(r"(?<![\w.<])([A-Za-z_][\w.]*(?:\[[\w,]+\])?(?:\.[A-Za-z_]\w*)*)(?![\w(<.\[])", lambda found: symbol(found[1]), text)
-    text = re.sub(r"<(.*?)>", lambda found: symbol(found[1]), text)
+    text = re.sub(r"(?<![\w.<])([A-Za-z_][\w.]*(?:\[[\w,]+\])?(?:\.[A-Za-z_]\w*)*)(?![\w(<.\[])", symbol_of, text)
+    text = re.sub(r"<(.*?)>", symbol_of, text)
     return text.replace("^", "**")
 
 
@@ -78,16 +79,25 @@ def shown(files, folder):
     return list(look_at(files, folder, [1200], "view => new XMLSerializer().serializeToString(view.document)").values())
 
 
+def special_symbols(root):
+    """Return the symbols of time, and of velocities such as vx of x, by the table of variables."""
+    rows = list(root.find(f".//{XHTML}table[@id='variables']").iter(f"{XHTML}tr"))
+    names, velocities = {row[1].text for row in rows}, [row[1].text for row in rows if row[5].text == f"velocity of {row[1].text[1:]}"]
+    special = {} if "t" in names else {"time": "t"}
+    return special | {name: f"{name[0]}_{symbol(name[1:])}" for name in velocities}
+
+
 def check(page):
     """Compare every formula of a shown page with its text at random values; return their number."""
     root, count = ElementTree.fromstring(page), 0
+    symbols = special_symbols(root)
     generator = random.Random(1)
     for equation in root.iter(f"{XHTML}div"):
         if equation.get("class") != "equation":
             continue
         conditions = lambda side: re.sub(r"\bif\(", "gate(", side)
         typeset = conditions("".join(infix(math) for math in equation.find(f"{XHTML}p") if math.tag != f"{XHTML}wbr")).split("=")
-        text = [plain(conditions(side)) for side in equation.find(f"{XHTML}details/{XHTML}code").text.split(" = ")]
+        text = [plain(conditions(side), symbols) for side in equation.find(f"{XHTML}details/{XHTML}code").text.split(" = ")]
         # The force of a constraint is typeset as a multiplier.
         typeset = [re.sub(r"\blambda_(\w+)", lambda found: f"F_{found[1]}" if f"F_{found[1]}" in " ".join(text) else found[0], side) for side in typeset]
         names = {name: generator.uniform(0.1, 0.9) for name in sorted(set(re.findall(r"[A-Za-z_]\w*", " ".join(text))))}
