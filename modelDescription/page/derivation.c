@@ -259,12 +259,8 @@ static void write_conserved(const struct Derivation *derivation) {
     page_paragraph(page, "They are constant between events.");
 }
 
-void write_derivation(struct Page *page) {
-  if (page->model->linearized || page->equations->count == 0 || page->equations->count > COORDINATE_LIMIT ||
-      inertia_has_trees(page->equations->inertia))
-    return;
+static void write_steps(struct Page *page) {
   struct Derivation derivation = derivation_of(page);
-  page_heading(page, "Derivation");
   page_fold(page, "step by step");
   write_freedom(&derivation);
   write_bodies(&derivation);
@@ -274,4 +270,14 @@ void write_derivation(struct Page *page) {
   write_state_space(&derivation);
   write_conserved(&derivation);
   page_end_fold(page);
+}
+
+void write_derivation(struct Page *page) {
+  const struct Equations *equations = page->equations;
+  if (page->model->linearized || equations->count == 0) return;
+  bool is_large = equations->count > COORDINATE_LIMIT || inertia_has_trees(equations->inertia);
+  page_heading(page, "Derivation");
+  if (is_large)
+    page_paragraph(page, "The steps are shown for systems of at most 5 coordinates without trees of bodies.");
+  else write_steps(page);
 }

@@ -157,7 +157,7 @@ static void append_bracket(const struct Model *model, char **indices, const char
 
 /*
  * Returns a name as a base with dots, and its indices: theta1, theta[1] and omegaCoupler become Greek letters with an
- * index, and x_end gets one too; the velocity vx of x is v with the index x. The part of the system that a name belongs
+ * index, and x_end gets one too. The velocity vx of x is v with the index x. The part of the system that a name belongs
  * to is the last index. The force of a constraint is lambda, and another loop.force is F, both with the name of the loop.
  */
 static char *symbol(const struct Model *model, const char *name, int dots) {

@@ -277,6 +277,7 @@ CASES = [
     ("particle as a value", 8, '<define name="a">bob</define><potential>m*g*bob.y</potential>', 8, r"unknown name 'bob'; expected bob\.x or bob\.y"),
     ("equation", 8, "<potential>U = m*g*bob.y</potential>", 8, "unknown name 'U'; write the value alone, without a name and ="),
     ("index in parentheses", 11, '<parameter name="k[1]" start="1"/><potential>m*g*l*k(1)</potential>', 11, r"'k' is not a function; write k\[...\] for an index"),
+    ("degrees after a number", 6, '<coordinate name="theta" velocity="omega" start="60deg"/>', 6, "'60deg' is not a number; write radians, as in 60\\*pi/180"),
     ("degrees in a number", 6, '<coordinate name="theta" velocity="omega" start="30°"/>', 6, "found '°'; write radians, as in 30\\*pi/180"),
     ("dash as a minus sign", 8, "<potential>m*g*l – 1</potential>", 8, "found '–'; write - for a minus sign"),
     ("long dash as a minus sign", 8, "<potential>m*g*l — 1</potential>", 8, "found '—'; write - for a minus sign"),

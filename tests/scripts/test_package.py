@@ -227,8 +227,9 @@ def test_options_for_robots(command, tmp_path):
         assert ", 4 parameters" in succeed(command("check", "cube.urdf", "--base", "floating", "--self", *ground, "--limits", "stops", "--friction", "sticks", "--effort", "limited", cwd=tmp_path))
     assert "there is no link 'cub' for the ground; did you mean 'cube'?" in command("check", "cube.urdf", "--base", "floating", "--feet", "cub", cwd=tmp_path).stderr
     succeed(command("check", "cube.xml", "--keyframe", "up", cwd=tmp_path))
-    assert "there is no <key> 'down'" in command("check", "cube.xml", "--keyframe", "down", cwd=tmp_path).stderr
-    assert "--robot is for robots" in command("check", fmu.ROOT / "fmu" / "SimplePendulum", "--base", "floating", cwd=tmp_path).stderr
+    assert "there is no <key> 'down'; expected one of up" in command("check", "cube.xml", "--keyframe", "down", cwd=tmp_path).stderr
+    assert "options such as base and ground are for robots" in command("check", fmu.ROOT / "fmu" / "SimplePendulum", "--base", "floating", cwd=tmp_path).stderr
+    assert "is an FMU; expected the file from which it was made" in command("check", fmu.archive("SimplePendulum"), cwd=tmp_path).stderr
     assert "is an FMU; expected the file of a robot for base=floating" in command("run", fmu.archive("SimplePendulum"), "--base", "floating", cwd=tmp_path).stderr
 
 
@@ -548,7 +549,7 @@ SENTENCES = [
     "seed is -1; expected a whole number that is not negative",
     "stop_time is [2]; expected a number of seconds, or a text such as '3s'",
     f"{fmu.archive('SimplePendulum')} is an FMU, which cannot be edited; expected the system.xml of which it was made",
-    "an editable page of pendulum.xml starts with the values in the file; expected edit=True without l",
+    "an editable page of pendulum.xml starts with the values in the file; write l there as start=\"...\", or leave out --edit (edit=True)",
     "'L' is not a variable of SimplePendulum; did you mean 'l'?",
     "the reference says nothing about 'restitutoin'; did you mean 'restitution'?",
     "the reference says nothing about 'restitutio'; did you mean 'restitution'?",

@@ -119,7 +119,7 @@ WORLD = """<mujoco><worldbody>
 <body name="b" pos="0 0 1"><joint name="hinge"/><geom size="0.1" condim="4"/>
 <body name="c" pos="0 0 1"><joint/><geom size="0.1" contype="0"/></body></body></body></worldbody>
 </mujoco>"""
-STANDS = "nothing stands on the geom 'floor'; expected ground=\"true\" in an <include>, or ground=\"false\" if this is meant"
+STANDS = "nothing stands on the geom 'floor'; expected ground=\"true\" in an <include> or --ground on the command line, or ground=\"false\" if this is meant"
 STATIC = "the geom 'wall' of the world does not touch the geom 'ga' of the body 'a', and 2 other such pairs, unlike in MuJoCo"
 BODIES = "the geom 'ga' of the body 'a' does not touch the geom on line 6 of the body 'c', unlike in MuJoCo"
 SPINS = "the torsional friction of condim=\"4\" is not read, and may change the motion; expected condim=\"3\""

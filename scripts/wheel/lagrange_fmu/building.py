@@ -36,6 +36,8 @@ def system_file(system):
         path = path / "system.xml"
     if not path.is_file():
         raise Problem(f"there is no file {path}{near_file(path) or '; expected a system in XML, a robot in URDF, or a folder with a system.xml in it'}")
+    if path.suffix == ".fmu":
+        raise Problem(f"{path} is an FMU; expected the file from which it was made")
     return path
 
 

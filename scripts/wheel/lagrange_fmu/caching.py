@@ -69,7 +69,7 @@ def _locked(file):
 @contextmanager
 def first_build(platform, report):
     """
-    Serialize the first builds for a platform, of which one compiles the platform's C library, for up to a minute.
+    Serialize the first builds for a platform, of which one compiles the platform's C library, for some minutes.
 
     Waiting builds report it by report(text). Later builds run concurrently.
     """
@@ -83,7 +83,7 @@ def first_build(platform, report):
             while not _locked(lock):
                 time.sleep(0.2)
         if not ready.exists():
-            report(f"compiling for {platform}; the first time, with the platform's C library, this takes up to a minute ...")
+            report(f"compiling for {platform}; the first time, with the platform's C library, this takes one to three minutes ...")
         yield
         ready.touch()
 

@@ -54,7 +54,7 @@ class Equilibrium:
     constraints: list[str]
 
     def __repr__(self):
-        lines = [f"{name} = {value:.9g}" for name, value in (self.point | self.outputs).items()]
+        lines = [f"{name} = {value if abs(value) > 1e-15 else 0:.9g}" for name, value in (self.point | self.outputs).items()]
         lines += [f"contacts that stay closed and frictions that stay stuck: {', '.join(self.constraints)}"] if self.constraints else []
         if self.linearization is None:
             return "\n".join([*lines, f"{self.stability}: the system switches there, such as a contact that touches without force or friction at its limit"])

@@ -25,7 +25,7 @@ def editor(system, output=None, robot=None):
 def live(system, settings=None, output=None, edit=False, robot=None):
     """See lagrange_fmu.live."""
     if edit and settings:
-        raise Problem(f"an editable page of {system} starts with the values in the file; expected edit=True without {', '.join(settings)}")
+        raise Problem(f"an editable page of {system} starts with the values in the file; write {', '.join(settings)} there as start=\"...\", or leave out --edit (edit=True)")
     if edit:
         return editor(system, output, robot)
     share_zig_cache()

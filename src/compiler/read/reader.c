@@ -163,7 +163,8 @@ static xmlDocPtr system_by_options(xmlDocPtr document, const struct ReaderOption
   if (is_robot(document))
     return system_of_robot(document, options->robot != NULL ? options->robot : &none, diagnostics);
   if (options->robot == NULL) return document;
-  report_error(diagnostics, 0, "--robot is for robots; expected a <robot> or <mujoco>");
+  report_error(diagnostics, 0,
+               "options such as base and ground are for robots; expected a file that begins with <robot> or <mujoco>");
   xmlFreeDoc(document);
   return NULL;
 }

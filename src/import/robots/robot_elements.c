@@ -62,10 +62,10 @@ xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char
   char *wanted = format_text("%s_%s", name, kind);
   if (!isnan(effort))
     set_attribute(write_parameter(writer, format_text("%s_effort", name), effort, unit_of_effort,
-                                  format_text("largest %s along %s", kind, name)),
+                                  format_text("largest %s %s %s", kind, is_length ? "along" : "about", name)),
                   "min", number(0));
   write_element(writer, "input", "name", wanted, "unit", unit_of_effort, "description",
-                format_text("%s along %s", kind, name), NULL);
+                format_text("%s %s %s", kind, is_length ? "along" : "about", name), NULL);
   set_content(write_element(writer, "force", "coordinate", name, NULL),
               isnan(effort) ? wanted : format_text("max(-%s_effort, min(%s_effort, %s))", name, name, wanted));
   return coordinate;

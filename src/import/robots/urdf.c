@@ -435,7 +435,7 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
     report_error(
         diagnostics, urdf.robot->line,
         "keyframe=\"%s\" is for MJCF; expected start values by <coordinate name=\"...\" start=\"...\"/> in the "
-        "<include>",
+        "<include>, or such as JOINT=1 on the command line",
         options->keyframe);
   if (xacro != NULL) report_xacro(diagnostics, xacro);
   for (xmlNodePtr node = root->children; node != NULL && xacro == NULL; node = node->next) {

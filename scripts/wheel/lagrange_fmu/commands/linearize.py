@@ -12,7 +12,7 @@ def arguments(parser):
 
 def table(name, matrix, rows, columns):
     """Return a matrix as text, with names of its rows and columns."""
-    cells = [[name, *columns], *([row, *(f"{value:.9g}" for value in line)] for row, line in zip(rows, matrix))]
+    cells = [[name, *columns], *([row, *(f"{value + 0.0:.9g}" for value in line)] for row, line in zip(rows, matrix))]
     widths = [max(map(len, column)) for column in zip(*cells)]
     return "\n".join("  ".join([line[0].ljust(widths[0]), *(cell.rjust(width) for cell, width in zip(line[1:], widths[1:]))]) for line in cells)
 
@@ -21,7 +21,7 @@ def text_of(found):
     """Return a linearization as text."""
     import numpy as np
 
-    parts = ["at " + ", ".join(f"{name} = {value:.9g}" for name, value in found.point.items())]
+    parts = ["at " + ", ".join(f"{name} = {value if abs(value) > 1e-15 else 0:.9g}" for name, value in found.point.items())]
     if found.constraints:
         parts.append(f"contacts that stay closed and frictions that stay stuck: {', '.join(found.constraints)}")
     rates = [f"der({state})" for state in found.states]

@@ -68,8 +68,12 @@ static struct Quantity parse_literal(struct Parser *parser) {
     return nothing;
   }
   if (end == parser->next || !isfinite(value) || isalnum((unsigned char)*end) || *end == '_' || *end == '.') {
-    FAIL(parser, "%s: '%.12s' is not a number; expected one such as 2, 0.5 or 1e-3 (write * for a product)",
-         parser->location.what, parser->next);
+    if (end > parser->next && strncmp(end, "deg", 3) == 0)
+      FAIL(parser, "%s: '%.12s' is not a number; write radians, as in %.*s*pi/180", parser->location.what, parser->next,
+           (int)(end - parser->next), parser->next);
+    else
+      FAIL(parser, "%s: '%.12s' is not a number; expected one such as 2, 0.5 or 1e-3 (write * for a product)",
+           parser->location.what, parser->next);
     return nothing;
   }
   char *text = format_text("%.*s", (int)(end - parser->next), parser->next);

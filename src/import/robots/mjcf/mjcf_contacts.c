@@ -214,10 +214,10 @@ static void check_ground(struct Mjcf *mjcf) {
   for (size_t i = 0; i < mjcf->contact_count; i++)
     is_met |= !is_static(&mjcf->contacts[i]) && may_meet(mjcf, &mjcf->ground, &mjcf->contacts[i]);
   if (is_met)
-    report_warning(
-        mjcf->file.diagnostics, line_of(mjcf->ground.node),
-        "nothing stands on %s; expected ground=\"true\" in an <include>, or ground=\"false\" if this is meant",
-        name_of(mjcf->ground.node));
+    report_warning(mjcf->file.diagnostics, line_of(mjcf->ground.node),
+                   "nothing stands on %s; expected ground=\"true\" in an <include> or --ground on the command line, or "
+                   "ground=\"false\" if this is meant",
+                   name_of(mjcf->ground.node));
 }
 
 void mjcf_find_contacts(struct Mjcf *mjcf) {
