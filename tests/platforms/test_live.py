@@ -262,6 +262,7 @@ def test_equations_and_system(browser, page_file, tmp_path):
             page.get_by_role("spinbutton", name=name, exact=True).press("Enter")
         with page.expect_download() as download:
             page.click("#system")
+        assert download.value.suggested_filename == "DoublePendulum.xml"
         download.value.save_as(tmp_path / "system.xml")
     subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "derived"], check=True)
 
@@ -282,7 +283,9 @@ def test_presentation(browser, page_file):
         page.keyboard.press("f")
         page.frame_locator("#presentation iframe").locator("math").first.wait_for()
         assert page.locator("#controls, #plots, footer").evaluate_all("nodes => nodes.every(node => getComputedStyle(node).display === 'none')")
-        assert page.evaluate("getComputedStyle(document.body).fontSize") == "24px"
+        assert page.evaluate("getComputedStyle(document.body).fontSize") == "24px" and page.locator("#speed").is_visible()
+        sources = page.frame_locator("#presentation iframe").locator("summary", has_text="LaTeX")
+        assert sources.count() > 0 and not any(source.is_visible() for source in sources.all())
         page.wait_for_function("document.querySelector('#presentation td:nth-child(2)').textContent !== ''")
         rows = page.locator("#presentation tr").evaluate_all("rows => rows.map(row => [...row.children].map(cell => cell.textContent))")
         values = dict(zip(page.evaluate("live.names"), page.evaluate("Array.from(live.history.samples.at(-1)[0])")))
@@ -315,26 +318,49 @@ def test_presets(browser, page_file):
 
 
 def test_energy_bar(browser, page_file):
-    """Kinetic energy and potential energy above its lowest value so far, as shares of their largest sum; the sum is constant here."""
+    """
+    Kinetic energy and potential energy above its least value in the experiment, which is close to -3 g, as shares of their largest sum. The sum is
+    constant here, also at the start. A parameter changes both.
+    """
+    start = 3 * 9.81 * -np.cos(2.0)
+    numbers = lambda: [float(text.removesuffix(" J")) for text in page.locator("#energies b").all_inner_texts()]
     with opened(browser, page_file("DoublePendulum")) as page:
+        low = page.evaluate("live.energyBar.low")
+        assert -3 * 9.81 <= low < -27 and numbers() == pytest.approx([0, start - low, start - low], rel=5e-3)
+        assert page.locator("#energies .bar i").evaluate_all("parts => parts.map(part => part.style.width)") == ["0%", "100%"]
         page.click("#play")
         page.wait_for_function("live.history.length > 100")
         page.click("#play")
         page.wait_for_timeout(300)
         names, samples = page.evaluate("live.names"), np.array(page.evaluate("live.history.samples.map(([run]) => Array.from(run))"))
         kinetic, potential = (samples[:, names.index(f"{kind}Energy")] for kind in ("kinetic", "potential"))
-        widths = page.locator("#energies i").evaluate_all("parts => parts.map(part => parseFloat(part.style.width))")
-        above = potential[-1] - potential.min()
-        assert widths[0] / widths[1] == pytest.approx(kinetic[-1] / above, rel=1e-3) and 50 < sum(widths) <= 100.001
+        widths = page.locator("#energies .bar i").evaluate_all("parts => parts.map(part => parseFloat(part.style.width))")
+        above = potential[-1] - min(low, page.evaluate("live.energyBar.low"))
+        assert widths[0] / widths[1] == pytest.approx(kinetic[-1] / above, rel=1e-3) and sum(widths) == pytest.approx(100, abs=0.1)
+        assert numbers() == pytest.approx([kinetic[-1], above, kinetic[-1] + above], rel=5e-3)
+        scene, bar = page.locator("#scene").bounding_box(), page.locator("#energies").bounding_box()
+        assert scene["y"] + scene["height"] <= bar["y"] + 1
         assert page.locator("#scene").get_attribute("aria-label") == "Two point masses on two massless rods, as it moves"
+        page.get_by_role("spinbutton", name="g", exact=True).fill("0.1")
+        page.get_by_role("spinbutton", name="g", exact=True).press("Enter")
+        page.wait_for_function("live.energyBar.low > -0.31")
 
 
-def test_labels_of_the_energy_bar(browser, page_file):
-    """A word that does not fit into its part of the bar is not cut, but hidden."""
-    label = "(part, width) => { part.style.width = width; const word = document.createRange(); word.selectNodeContents(part); return [...word.getClientRects()].at(-1).top < part.getBoundingClientRect().bottom; }"
-    with opened(browser, page_file("DoublePendulum")) as page:
-        kinetic = page.locator("#energies i.kinetic")
-        assert [kinetic.evaluate(label, width) for width in ("80px", "20px", "4px")] == [True, False, False]
+def test_the_link(browser, page_file):
+    """A link contains changed values and the ghost, and the page says that it is copied. The address of a file is of no use to others."""
+    with opened(browser, page_file("DoublePendulum"), "#theta1=0.5&ghost=near") as page:
+        page.wait_for_function("live.history.runs === 2")
+        assert page.input_value("#ghost") == "near"
+        page.click("#link")
+        page.wait_for_function("document.getElementById('linked').textContent === 'send the file of this page'")
+    with contextlib.closing(browser.new_context(permissions=["clipboard-read", "clipboard-write"])) as context:
+        page = context.new_page()
+        page.route("https://pages.test/**", lambda route: route.fulfill(path=page_file("DoublePendulum"), content_type="text/html"))
+        page.goto("https://pages.test/page.html#theta1=0.5&ghost=near")
+        page.wait_for_selector("body[data-ready]", timeout=60000)
+        page.click("#link")
+        page.wait_for_function("document.getElementById('linked').textContent === 'copied'")
+        assert page.evaluate("navigator.clipboard.readText()") == "https://pages.test/page.html#theta1=0.5&ghost=near"
 
 
 def test_a_section(browser, page_file):
@@ -397,6 +423,7 @@ def test_a_ghost(browser, page_file):
         page.get_by_role("spinbutton", name="g", exact=True).press("Enter")
         place = page.evaluate("live.names.indexOf('potentialEnergy')")
         page.wait_for_function(f"live.history.samples[0][1][{place}] < 10 && live.history.samples[0][0][{place}] < 10")
+        page.wait_for_function("document.getElementById('pale').textContent === 'pale: theta1 + 1e-9'")
         page.select_option("#ghost", "none")
         page.wait_for_function("live.history.runs === 1")
 

@@ -5,20 +5,36 @@ import re
 import numpy as np
 import pytest
 
-from driven_chromium import browser, opened, page_of_fmu  # noqa: F401
+from driven_chromium import PHONE, browser, opened, page_of_fmu  # noqa: F401
 
-# A driver of the crane: speeds in proportion to the distances that are left, set by the number fields.
+# A driver of the crane: speeds in proportion to the distances that are left, set by the sliders.
 DRIVE = """() => {
-  const fieldOf = (name) => document.querySelector(`input[type=number][aria-label=${name}]`), valueOf = (name) => live.history.samples.at(-1)[0][live.names.indexOf(name)];
+  const sliderOf = (name) => document.querySelector(`input[type=range][aria-label=${name}]`), valueOf = (name) => live.history.samples.at(-1)[0][live.names.indexOf(name)];
   const choose = (name, value) => {
-    fieldOf(name).value = String(Math.max(-0.8, Math.min(0.8, value)).toFixed(3));
-    fieldOf(name).dispatchEvent(new Event("change"));
+    const [low, high] = live.rangeOf(name);
+    sliderOf(name).value = String((1000 * (Math.max(-0.8, Math.min(0.8, value)) - low)) / (high - low));
+    sliderOf(name).dispatchEvent(new Event("input"));
   };
   window.driver = setInterval(() => {
     choose("trolleySpeed", 0.3 * (15 - valueOf("x")));
     choose("hoistSpeed", 0.5 * (10 - valueOf("l")));
   }, 20);
 }"""
+
+
+def test_levers_on_a_phone(browser, page_of_fmu):
+    """An input has 0 in the middle of its slider. The scene stays in sight above the levers; there are no hints for keys."""
+    with opened(browser, page_of_fmu("GantryCrane"), **PHONE) as page:
+        page.tap("text=At rest, levers in the middle")
+        for name, largest in (("trolleySpeed", 2), ("hoistSpeed", 1)):
+            lever = page.get_by_role("slider", name=name)
+            assert lever.input_value() == "500" and page.evaluate("name => live.rangeOf(name)", name) == [-largest, largest]
+            lever.fill("250")
+            assert page.get_by_role("spinbutton", name=name).input_value() == f"{-largest / 2:g}"
+        page.evaluate("document.querySelector('input[type=range][aria-label=m]').scrollIntoView()")
+        view = page.locator("#view").bounding_box()
+        assert page.evaluate("scrollY") > 400 and view["y"] == 0 and view["height"] <= 400
+        assert page.locator(".keys").count() == 2 and not page.locator(".keys").first.is_visible()
 
 
 def test_a_load_is_delivered(browser, page_of_fmu):

@@ -9,6 +9,7 @@ from playwright.sync_api import sync_playwright
 import fmu
 from scripts.library.live_page.page import page_of
 
+PHONE = {"viewport": {"width": 420, "height": 800}, "has_touch": True, "is_mobile": True}  # options of opened()
 ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 # JavaScript: the number of different colours in the picture.
@@ -36,9 +37,9 @@ def browser():
 
 
 @contextlib.contextmanager
-def opened(browser, file, settings=""):
-    """Yield the page once it is ready; check at the end that it logged no error."""
-    page, complaints = browser.new_page(viewport={"width": 1200, "height": 700}), []
+def opened(browser, file, settings="", **options):
+    """Yield the page once it is ready, with options of Chromium's context; check at the end that it logged no error."""
+    page, complaints = browser.new_page(**{"viewport": {"width": 1200, "height": 700}} | options), []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") and "GL Driver" not in message.text else None)
     page.goto(file.as_uri() + settings)

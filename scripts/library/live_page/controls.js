@@ -8,12 +8,12 @@ function naturalSize(unit) {
   return Number({ N: weight, "N.m": weight * length }[unit]?.toPrecision(1)) || 1;
 }
 
-// Returns the range of a slider: [low, high, true for a logarithmic scale].
-function rangeOf({ start, min, max, unit }) {
+// Returns the range of a slider: [low, high, true for a logarithmic scale]. Inputs have 0 in the middle.
+function rangeOf({ role, start, min, max, unit }) {
   const low = min ?? -Infinity, high = max ?? Infinity;
   if (isFinite(low) && isFinite(high)) return [low, high, low > 0 && high / low >= 100];
   if (unit === "rad") return [Math.max(low, Math.min(-Math.PI, start)), Math.min(high, Math.max(Math.PI, start)), false];
-  if (start > 0) return [Math.max(low, start / 10), Math.min(high, start * 10), low >= 0 || !isFinite(low)];
+  if (start > 0 && role !== "input") return [Math.max(low, start / 10), Math.min(high, start * 10), low >= 0 || !isFinite(low)];
   const size = 2 * Math.abs(start) || naturalSize(unit);
   return [Math.max(low, -size), Math.min(high, size), false];
 }
@@ -22,7 +22,7 @@ class Control {
   // variable: name, unit, description, start, min, max, type; onChange(value) is called for each new value.
   constructor(variable, onChange) {
     this.variable = variable;
-    this.value = this.idle = variable.start; // idle: the value of an input while no key is pressed
+    this.value = this.idle = variable.start; // idle: the value of the file or of the preset, which an input has while no key is pressed
     [this.low, this.high, this.isLogarithmic] = rangeOf(variable);
     this.element = document.createElement("div");
     this.element.className = "control";
@@ -42,7 +42,7 @@ class Control {
     this.show();
     this.slider.addEventListener("input", () => this.choose(this.valueAt(this.slider.value / 1000), onChange));
     this.number.addEventListener("change", () => Number.isFinite(this.number.valueAsNumber) && this.choose(this.number.valueAsNumber, onChange));
-    this.slider.addEventListener("dblclick", () => this.choose(variable.start, onChange));
+    this.slider.addEventListener("dblclick", () => this.choose(this.idle, onChange));
   }
 
   valueAt(share) {

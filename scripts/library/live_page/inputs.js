@@ -19,7 +19,7 @@ const isTyping = (event) => ["INPUT", "SELECT"].includes(event.target.tagName);
 function addKeys() {
   keyInputs = [...controls].filter(([index]) => description.variables[index].role === "input").slice(0, 2);
   const keys = [["ArrowLeft", "ArrowRight", " keys ←\u00a0→"], ["ArrowDown", "ArrowUp", " keys ↓\u00a0↑"]];
-  keyInputs.forEach(([, control], i) => control.element.querySelector(".name").append(Object.assign(document.createElement("small"), { textContent: keys[i][2] })));
+  keyInputs.forEach(([, control], i) => control.element.querySelector(".name").append(Object.assign(document.createElement("small"), { className: "keys", textContent: keys[i][2] })));
   const apply = (event, share) => {
     const i = keys.findIndex((pair) => pair.includes(event.key));
     if (isTyping(event) || i < 0 || i >= keyInputs.length || event.repeat) return;

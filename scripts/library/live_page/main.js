@@ -2,7 +2,6 @@
 "use strict";
 
 const [SHORT, LONG, SHOWN_FOR] = [2, 100, 5]; // s: an experiment outside of these durations begins at a speed at which it is shown for some seconds
-const GHOST = 1e-9; // difference of the ghost's first start value
 // Functions of formulas that Math of JavaScript has, too.
 const FUNCTIONS = ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh", "acosh", "atanh", "exp", "log", "sqrt", "pow", "abs", "sign", "min", "max", "floor", "ceil"];
 const $ = (id) => document.getElementById(id);
@@ -21,7 +20,7 @@ const history = new History(shownVariables.length);
 const sections = new History(shownVariables.length); // a sample at the end of each period: a Poincaré section
 const controls = new Map(); // by the index of the variable
 const plots = [];
-const live = (window.live = { history, sections, plots, names: shownVariables.map((variable) => variable.name), handlers: {}, ready: null, valueOf, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
+const live = (window.live = { history, sections, plots, names: shownVariables.map((variable) => variable.name), handlers: {}, ready: null, valueOf, ghostEnd, rangeOf: (name) => ranges().get(name) }); // for tests and the browser's console
 let worker, scene = null, energyBar = null, playing = false, viewed = null, pace = [0, 0];
 const CLOCK_DIGITS = Math.max(0, Math.min(12, 3 - Math.floor(Math.log10(recording ? recording.duration : description.duration))));
 
@@ -35,6 +34,7 @@ function send(name, content = {}) {
     resetTimer = null;
     if (name !== "reset") worker.postMessage({ name: "reset" });
   }
+  if (name === "set" && description.variables[content.index].role === "parameter") energyBar?.forget();
   worker.postMessage({ name, ...content });
 }
 
@@ -136,6 +136,7 @@ const handlers = {
 function buildScene(samples, times) {
   if (!scene) return;
   scene.build(samples, times);
+  energyBar?.expect(samples.slice(0, scene.viewed));
   $("rotation").parentElement.hidden = !scene.plane;
   $("forcesChoice").hidden = scene.arrows.forces.length === 0;
   $("velocitiesChoice").hidden = scene.arrows.velocities.length === 0;
@@ -236,7 +237,9 @@ function frame(now) {
     energyBar?.draw(at);
     drawPresented(at);
     const first = history.indexOf(history.time(history.length - 1) - shownWindow);
-    for (const plot of plots) plot.draw(first, history.length, at);
+    const end = ghostEnd(first, history.length), reach = ghostReach();
+    for (const plot of plots) plot.draw(first, history.length, at, end, reach);
+    showGhostText();
   }
   requestAnimationFrame(frame);
 }
@@ -250,16 +253,27 @@ function save(name, content, type) {
 // Returns the controls whose values differ from those of the FMU.
 const settings = () => [...controls].filter(([index, control]) => control.value !== description.variables[index].start);
 
-// Restarts with a second run of the chosen kind, or without one. The first start value of the kind "near" differs slightly.
-function chooseGhost() {
-  const kind = $("ghost").value, [index, control] = [...controls].find(([index]) => description.variables[index].role === "start");
-  if (scene) scene.options.ghost = kind;
-  send("ghost", { kind, differences: kind === "near" ? [[index, control.value + GHOST]] : [] });
+// Copies the address of the page with the settings, and with a ghost that needs no others. The address of a file is of no use to others.
+async function share() {
+  const parameters = new URLSearchParams(settings().map(([index, control]) => [description.variables[index].name, control.value]));
+  if (["near", "linear"].includes(ghostKind())) parameters.append("ghost", ghostKind());
+  if (!laboratory) window.history.replaceState(null, "", `#${parameters}`);
+  const copied = () => navigator.clipboard.writeText(location.href).then(() => "copied", () => "now in the address bar");
+  const advice = laboratory ? "send the file of Save page" : location.protocol === "file:" ? "send the file of this page" : null;
+  $("linked").textContent = advice ?? (navigator.clipboard ? await copied() : "now in the address bar");
+}
+
+// Starts the ghost that the address names.
+function startLinkedGhost() {
+  const kind = new URLSearchParams(location.hash.slice(1)).get("ghost");
+  if (!["near", "linear"].includes(kind) || !firstStart()) return;
+  $("ghost").value = kind;
+  chooseGhost();
 }
 
 function addActions() {
   $("ghost").addEventListener("change", chooseGhost);
-  $("ghostChoice").hidden = ![...controls].some(([index]) => description.variables[index].role === "start");
+  $("ghostChoice").hidden = !firstStart();
   $("play").addEventListener("click", play);
   for (const name of ["step", "back", "reset"]) $(name).addEventListener("click", () => move(name));
   $("speed").addEventListener("input", setSpeed);
@@ -273,11 +287,7 @@ function addActions() {
   for (const name of ["names", "trails", "forces", "velocities", "follow"]) $(name).addEventListener("change", () => scene && (scene.options[name] = $(name).checked));
   $("csv").addEventListener("click", () => save(`${description.name}.csv`, history.csv(live.names), "text/csv"));
   $("picture").addEventListener("click", () => scene && scene.renderer.domElement.toBlob((picture) => save(`${description.name}.png`, picture, "image/png")));
-  $("link").addEventListener("click", () => {
-    const parameters = new URLSearchParams(settings().map(([index, control]) => [description.variables[index].name, control.value]));
-    window.history.replaceState(null, "", `#${parameters}`);
-    if (navigator.clipboard) navigator.clipboard.writeText(location.href).catch(() => {});
-  });
+  $("link").addEventListener("click", share);
   $("licenses").addEventListener("click", () => {
     $("licenseText").querySelector("pre").textContent = data.licenses;
     $("licenseText").showModal();
@@ -344,6 +354,7 @@ async function runFmu() {
   const modules = laboratory ? { laboratory: { ...laboratory, bytes: window.parent.laboratoryBytes } } : { modules: separated(await unpacked(data.wasm)) };
   worker.postMessage({ name: "begin", ...modules, pulls, description, shown: shownIndices, set: settingsAtStart() });
   await started;
+  startLinkedGhost();
 }
 
 // Shows the title of a system that was derived in the browser.
@@ -357,8 +368,9 @@ function showTitle() {
 function addEnergyBar() {
   const columns = ["kineticEnergy", "potentialEnergy"].map((name) => columnOf.get(name));
   if (columns.includes(undefined)) return;
-  energyBar = new EnergyBar($("energies"), history, columns);
+  energyBar = live.energyBar = new EnergyBar($("energies"), history, columns);
   $("energies").hidden = false;
+  $("scene").style.bottom = "2.8em"; // the space of the bar
 }
 
 // Chooses the speed at which an experiment that is short or long lasts some seconds, as far as the slider goes.

@@ -21,6 +21,24 @@ function formatted(value, digits = 4) {
   return String(Number(value.toPrecision(digits)));
 }
 
+// Returns the range of values, with a margin.
+function spanOf(first, last, valueAt) {
+  let low = Infinity, high = -Infinity;
+  for (let i = first; i < last; i++) {
+    const value = valueAt(i);
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  if (!(high >= low)) return [0, 1];
+  const magnitude = Math.max(Math.abs(low), Math.abs(high));
+  if (magnitude <= ROUNDING) return [-1, 1];
+  const margin = high - low > 1e-12 * magnitude ? (high - low) * 0.06 : 0.1 * magnitude;
+  return [low - margin, high + margin];
+}
+
+// Returns a range, enlarged to that of a ghost by at most `reach` times its width on each side.
+const enlarged = ([low, high], [from, to], reach) => [Math.max(low - reach * (high - low), Math.min(low, from)), Math.min(high + reach * (high - low), Math.max(high, to))];
+
 class Plot {
   // history: a History. section: a History that is drawn as points, if it has any and the plot is not against time. choices: names and units of
   // the variables; columns: indices of the drawn ones; abscissa: index of the horizontal variable, or -1 for the time.
@@ -51,9 +69,9 @@ class Plot {
 
   writeLegend() {
     const items = this.columns.map((column, i) => {
-      const item = document.createElement("span"), mark = document.createElement("i"), value = document.createElement("b");
+      const item = document.createElement("span"), mark = document.createElement("i"), value = document.createElement("b"), pale = document.createElement("small");
       mark.style.background = COLORS[i % COLORS.length];
-      item.append(mark, `${this.choices[column].name}${this.choices[column].unit ? ` [${this.choices[column].unit}]` : ""} `, value);
+      item.append(mark, `${this.choices[column].name}${this.choices[column].unit ? ` [${this.choices[column].unit}]` : ""} `, value, pale);
       item.title = "click to remove";
       item.addEventListener("click", () => {
         this.columns.splice(i, 1);
@@ -63,22 +81,8 @@ class Plot {
     });
     const adding = this.selection("add a variable", "+ variable", -1, (column) => column >= 0 && !this.columns.includes(column) && this.columns.push(column));
     const abscissa = this.selection("horizontal axis", "against time", this.abscissa, (column) => (this.abscissa = column));
-    this.values = items.map((item) => item.lastChild);
+    this.values = items.map((item) => [...item.querySelectorAll("b, small")]);
     this.legend.replaceChildren(...items, adding, abscissa);
-  }
-
-  rangeOf(first, last, valueAt) {
-    let low = Infinity, high = -Infinity;
-    for (let i = first; i < last; i++) {
-      const value = valueAt(i);
-      if (value < low) low = value;
-      if (value > high) high = value;
-    }
-    if (!(high >= low)) return [0, 1];
-    const magnitude = Math.max(Math.abs(low), Math.abs(high));
-    if (magnitude <= ROUNDING) return [-1, 1];
-    const margin = high - low > 1e-12 * magnitude ? (high - low) * 0.06 : 0.1 * magnitude;
-    return [low - margin, high + margin];
   }
 
   // Returns the largest magnitude of all curves that have the unit of this column.
@@ -87,14 +91,15 @@ class Plot {
     return Math.max(...sameUnit.flat().map(Math.abs));
   }
 
-  // Draws the samples from first to last with a mark at one of them, or all points of the section.
-  draw(first, last, marked) {
+  // Draws the samples from first to last with a mark at one of them, or all points of the section. The ghost ends at the sample `end`, and enlarges
+  // the axes by at most `reach` times their ranges.
+  draw(first, last, marked, end, reach) {
     const isSection = this.abscissa >= 0 && this.section.length > 0;
-    if (isSection) this.drawSamples(this.section, 0, this.section.length, null);
-    else this.drawSamples(this.history, first, last, marked);
+    if (isSection) this.drawSamples(this.section, 0, this.section.length, null, this.section.length, 0);
+    else this.drawSamples(this.history, first, last, marked, end, reach);
   }
 
-  drawSamples(history, first, last, marked) {
+  drawSamples(history, first, last, marked, end, reach) {
     const ratio = window.devicePixelRatio || 1, width = this.canvas.clientWidth, height = this.canvas.clientHeight;
     if (this.canvas.width !== Math.round(width * ratio) || this.canvas.height !== Math.round(height * ratio)) {
       this.canvas.width = Math.round(width * ratio);
@@ -106,10 +111,12 @@ class Plot {
     pen.clearRect(0, 0, width, height);
     pen.font = "11px system-ui, sans-serif";
     const { abscissa } = this, draw = history === this.section ? this.drawPoints : this.drawLine, values = (column, run) => (i) => history.value(i, column, run);
-    const horizontal = abscissa < 0 ? (i) => history.time(i) : values(abscissa, 0);
-    const span = abscissa < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + (last - first > 1 ? 1e-9 : description.stepSize))] : this.rangeOf(first, last, horizontal);
-    const ranges = this.columns.map((column) => this.rangeOf(first, last, values(column, 0)));
-    const range = ranges.length ? [Math.min(...ranges.map((one) => one[0])), Math.max(...ranges.map((one) => one[1]))] : [0, 1];
+    const horizontal = abscissa < 0 ? (i) => history.time(i) : values(abscissa, 0), hasGhost = history.runs > 1 && end > first;
+    const withGhost = (range, column) => (hasGhost ? enlarged(range, spanOf(first, end, values(column, 1)), reach) : range);
+    const span = abscissa < 0 && last > first ? [history.time(first), Math.max(history.time(last - 1), history.time(first) + (last - first > 1 ? 1e-9 : description.stepSize))] : withGhost(spanOf(first, last, horizontal), abscissa);
+    const ranges = this.columns.map((column) => spanOf(first, last, values(column, 0)));
+    const union = (some) => [Math.min(...some.map((one) => one[0])), Math.max(...some.map((one) => one[1]))], own = ranges.length ? union(ranges) : [0, 1];
+    const range = (this.range = ranges.length && hasGhost ? enlarged(own, union(this.columns.map((column) => spanOf(first, end, values(column, 1)))), reach) : own);
     const ticks = ticksOf(...range, Math.max(2, height / 35)), labels = ticks.map((tick) => formatted(tick));
     const left = 8 + Math.max(20, ...labels.map((label) => pen.measureText(label).width)), bottom = height - 18;
     const x = (value) => left + ((value - span[0]) / (span[1] - span[0])) * (width - left - 8);
@@ -122,12 +129,13 @@ class Plot {
     for (let run = history.runs - 1; run >= 0; run--)
       this.columns.forEach((column, i) => {
         const abscissaAt = abscissa < 0 ? horizontal : values(abscissa, run);
-        draw.call(this, pen, first, last, (k) => x(abscissaAt(k)), ((value) => (k) => y(value(k)))(values(column, run)), COLORS[i % COLORS.length], run);
+        draw.call(this, pen, first, run === 0 ? last : end, (k) => x(abscissaAt(k)), ((value) => (k) => y(value(k)))(values(column, run)), COLORS[i % COLORS.length], run);
       });
     pen.restore();
     const at = this.cursor && abscissa < 0 ? history.indexOf(span[0] + ((this.cursor[0] - left) / (width - left - 8)) * (span[1] - span[0]), first, last) : marked;
     if (at !== null && at < last) this.drawMarks(pen, at, x(horizontal(at)), y, bottom, ink);
-    this.values.forEach((value, i) => (value.textContent = at !== null && at < last ? formatted(significant(history.value(at, this.columns[i], 0), this.magnitudeOf(this.columns[i], ranges)), 5) : ""));
+    const textOfRun = (i, run) => (at !== null && at < last && run < history.runs ? formatted(significant(history.value(at, this.columns[i], run), this.magnitudeOf(this.columns[i], ranges)), 5) : "");
+    this.values.forEach((parts, i) => parts.forEach((part, run) => (part.textContent = textOfRun(i, run))));
   }
 
   drawGrid(pen, { ticks, labels, columnTicks, x, y, left, bottom, width, ink, grid }) {

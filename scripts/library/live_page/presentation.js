@@ -48,9 +48,10 @@ function endPresentation() {
 
 const adaptSize = () => window.dispatchEvent(new Event("resize"));
 
-// Begins the documentation at its equations of motion, in large type.
+// Begins the documentation at its equations of motion, in large type and without their sources.
 function showEquations(page) {
   page.documentElement.style.setProperty("zoom", "1.5");
+  for (const details of page.querySelectorAll("details")) if (/LaTeX/.test(details.firstElementChild.textContent)) details.hidden = true;
   const link = [...page.querySelectorAll('a[href^="#"]')].find(({ textContent }) => /equations of motion/i.test(textContent));
   if (link) page.querySelector(link.hash)?.scrollIntoView();
 }

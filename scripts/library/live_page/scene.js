@@ -6,6 +6,7 @@ const CORNERS = [-1, 1].flatMap((x) => [-1, 1].flatMap((y) => [-1, 1].map((z) =>
 const TRAIL_LENGTH = 240; // samples of a trail
 const FAR = 4; // times its own size: a system that travels further is followed by the view
 const GROWN = 6; // times its size at the start: the view ignores what comes after it, as of an unstable linear system
+const PALE = 0.35; // opacity of a ghost
 const MOST_TRAILS = 8; // with more moving elements only the last one has a trail
 
 // True for a body in the plane, which has a single moment of inertia.
@@ -180,6 +181,7 @@ class Scene {
     const boxes = grown > 0 ? whole.slice(0, grown) : whole;
     for (const box of boxes) all.union(box);
     const own = Math.max(...sizes.slice(0, boxes.length)), extent = all.getSize(new THREE.Vector3());
+    this.viewed = boxes.length;
     this.followedAxes = [0, 1, 2].filter((axis) => own > 0 && extent.getComponent(axis) > FAR * own);
     this.start = boxes[0].getCenter(new THREE.Vector3());
     this.travelled = new THREE.Vector3();
@@ -385,25 +387,20 @@ class Scene {
   }
 
   // Adds a rod between two elements, or from the centre of a planar body to its joint.
-  addRod(connection) {
-    const thickness = 0.014 * this.radius / (1 + this.elements.length / 60);
-    const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(thickness, thickness, 1, 10), this.rodMaterial);
-    this.world.add(mesh);
-    let ball = null;
-    if (connection.tag === "joint") {
-      ball = new THREE.Mesh(new THREE.SphereBufferGeometry(1.6 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
-      this.world.add(ball);
-    }
-    if (connection.tag === "rod" && !connection.from) {
-      ball = new THREE.Mesh(new THREE.SphereBufferGeometry(2 * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350));
-      this.world.add(ball);
-    }
-    return { connection, mesh, ball };
+  addRod(connection, opacity = 1) {
+    const thickness = 0.014 * this.radius / (1 + this.elements.length / 60), group = new THREE.Group(), look = { transparent: opacity < 1, opacity };
+    const mesh = new THREE.Mesh(new THREE.CylinderBufferGeometry(thickness, thickness, 1, 10), this.material(this.rodMaterial.color, look));
+    const size = connection.tag === "joint" ? 1.6 : connection.from ? 0 : 2;
+    const ball = size && new THREE.Mesh(new THREE.SphereBufferGeometry(size * thickness, 12, 8), this.material(this.isDark ? 0xe6e9ef : 0x3a4350, look));
+    group.add(mesh);
+    if (ball) group.add(ball);
+    this.world.add(group);
+    return { connection, mesh, ball, group };
   }
 
-  placeRods(sample) {
+  placeRods(rods, sample) {
     const from = new THREE.Vector3(), to = new THREE.Vector3(), direction = new THREE.Vector3(), y = new THREE.Vector3(0, 1, 0);
-    for (const { connection, mesh, ball } of this.rods) {
+    for (const { connection, mesh, ball } of rods) {
       if (connection.tag === "joint") {
         this.position(sample, this.byName.get(connection.of), from);
         this.jointPosition(sample, connection, to);
@@ -592,8 +589,14 @@ class Scene {
     if (!sample && !this.ghosts) return;
     this.ghosts ??= this.elements.map((_, i) => this.ghostOf(i));
     this.ghostLines ??= this.lines.filter(({ kind }) => !["ground", "pivot"].includes(kind)).map(({ line }) => this.ghostOfLine(line, sample, time));
+    this.ghostRods ??= this.rods.map(({ connection }) => this.addRod(connection, PALE));
     for (const ghost of this.ghosts) ghost.visible = Boolean(sample);
-    if (sample) this.placeElements(this.ghosts, sample);
+    // The positions of joints are formulas, too.
+    for (const { group, connection } of this.ghostRods) group.visible = Boolean(sample) && (connection.tag === "rod" || this.options.ghost !== "kept");
+    if (sample) {
+      this.placeElements(this.ghosts, sample);
+      this.placeRods(this.ghostRods, sample);
+    }
     for (const ghost of this.ghostLines) {
       if (sample && this.isKnown(ghost.line)) ghost.update(sample, time);
       else ghost.group.visible = false;
@@ -607,13 +610,13 @@ class Scene {
 
   ghostOfLine(line, sample, time) {
     const ghost = new DrawnLine(this, line, this.compiled), [from, to] = ghost.at(sample, time);
-    this.world.add(ghost.build(from.distanceTo(to), 0.35));
+    this.world.add(ghost.build(from.distanceTo(to), PALE));
     return ghost;
   }
 
   ghostOf(i) {
     const ghost = this.objects[i].clone();
-    ghost.traverse((part) => part.isMesh && (part.material = this.material(this.colorOf(i), { transparent: true, opacity: 0.35 })));
+    ghost.traverse((part) => part.isMesh && (part.material = this.material(this.colorOf(i), { transparent: true, opacity: PALE })));
     ghost.matrixAutoUpdate = false;
     this.world.add(ghost);
     return ghost;
@@ -634,7 +637,7 @@ class Scene {
     if (this.plane) this.enlargeView(runs[0], time);
     this.placeElements(this.objects, runs[0]);
     this.placeGhost(runs[1], time);
-    this.placeRods(runs[0]);
+    this.placeRods(this.rods, runs[0]);
     for (const line of this.lines) line.update(runs[0], time);
     this.arrows.update(history, at);
     this.placeTrails(history, at);

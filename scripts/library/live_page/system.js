@@ -30,6 +30,6 @@ function addSystem() {
   $("system").addEventListener("click", () => {
     const [text, missing] = systemNow();
     if (missing.length > 0) showMessage(`system.xml does not name ${missing.join(", ")}; it is saved without their values.`);
-    save("system.xml", text, "text/xml");
+    save(`${description.name}.xml`, text, "text/xml");
   });
 }

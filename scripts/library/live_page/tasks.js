@@ -53,7 +53,7 @@ function startTask(one) {
   if (task) endTask("");
   applyPreset(presetsOf(file, description).find(({ name }) => name === one.preset) ?? { values: [] });
   task = Object.assign(one, { isRunning: false, metSince: null, last: 0 });
-  showState(one, "use the inputs, by sliders or keys");
+  showState(one, matchMedia("(hover: none)").matches ? "use the sliders of the inputs" : "use the inputs, by sliders or keys");
   if (!playing) play();
 }
 
