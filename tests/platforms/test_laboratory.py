@@ -2,6 +2,7 @@
 
 import contextlib
 import functools
+import re
 import subprocess
 from xml.etree import ElementTree
 
@@ -11,7 +12,7 @@ import wasmtime
 
 import fmu
 from building import ROOT
-from driven_chromium import browser  # noqa: F401
+from driven_chromium import PHONE, browser  # noqa: F401
 from scripts.commands.live import LABORATORY
 from scripts.library.live_page.editor import editor_of, files_of
 
@@ -173,9 +174,9 @@ def test_files_that_others_refer_to(tmp_path):
 
 
 @contextlib.contextmanager
-def editor(browser, file):
-    """Yield the page once its inner page runs; check at the end that it logged no error."""
-    page, complaints = browser.new_page(viewport={"width": 1500, "height": 800}), []
+def editor(browser, file, **options):
+    """Yield the page once its inner page runs, with options of Chromium's context; check at the end that it logged no error."""
+    page, complaints = browser.new_page(**{"viewport": {"width": 1500, "height": 800}} | options), []
     page.on("pageerror", lambda error: complaints.append(str(error)))
     page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
     page.goto(file.as_uri())
@@ -212,6 +213,13 @@ def write_page(tmp_path, name):
     return file
 
 
+# JavaScript: the selected text, and the number of its line.
+SELECTED = """() => {
+  const { value, selectionStart, selectionEnd } = document.getElementById("source");
+  return [value.slice(selectionStart, selectionEnd), value.slice(0, selectionStart).split("\\n").length];
+}"""
+
+
 def test_a_system_is_changed_in_the_page(browser, tmp_path):
     """
     A mistake is reported at its line; a valid system runs, and can be saved as a page of its own. A mass on a spring follows its closed
@@ -237,12 +245,22 @@ def test_a_system_is_changed_in_the_page(browser, tmp_path):
         assert page.locator("#messages").inner_text().startswith("line 6: the potential: unknown name 'y'")
         assert page.locator("#lines .wrong").inner_text() == "6" and page.evaluate("bench.runs") == 1
         page.locator("#messages button").click()
-        assert page.evaluate("(({ value, selectionStart, selectionEnd }) => value.slice(selectionStart, selectionEnd))(document.getElementById('source'))") == "  <potential>k*y^2/2</potential>"
+        assert page.evaluate(SELECTED) == ["y", 6] and page.locator("#colors .wrong").all_inner_texts() == ["y"]
+        page.locator("#source").fill(spring.replace("k*x^2/2", "0*x + " * 40 + "k*y^2/2"))
+        page.wait_for_function("document.getElementById('state').textContent === '1 error'")
+        page.locator("#messages button").click()
+        assert page.evaluate(SELECTED) == ["y", 6]
+        source, mistake = page.locator("#source").bounding_box(), page.locator("#colors .wrong").bounding_box()
+        assert source["x"] + source["width"] / 2 < mistake["x"] < source["x"] + source["width"] - 10
+        with page.expect_download() as download:
+            page.locator("#saveFile").click()
+        assert download.value.suggested_filename == "Spring.xml"
         run_anew(page, spring)
         assert page.locator("#messages").inner_text() == "" and page.locator("#lines .wrong").count() == 0
         assert run_in(page, 3.0)["x"] == pytest.approx(0.3 * np.cos(6.0), abs=1e-8)
         with page.expect_download() as download:
             page.locator("#savePage").click()
+        assert download.value.suggested_filename == "Spring-edit.html"
         download.value.save_as(tmp_path / "kept.html")
     with editor(browser, tmp_path / "kept.html") as page:
         assert page.locator("#source").input_value() == spring
@@ -308,6 +326,56 @@ def test_colors_and_the_button_that_inserts(browser, tmp_path):
         page.keyboard.press("Enter")
         page.keyboard.type("3")
         assert '  <experiment stopTime="3"/>' in page.locator("#source").input_value()
+
+
+def test_an_element_is_inserted_on_a_phone(browser, tmp_path):
+    """The list is in sight, beside the new line at the end of a long system. Nothing is reported before the first value is filled."""
+    with editor(browser, write_page(tmp_path, "SimplePendulum"), **PHONE) as page:
+        page.tap("#insert")
+        page.wait_for_timeout(1000)
+        text, words = page.locator("#text").bounding_box(), page.locator("#completions").bounding_box()
+        line = text["y"] + page.evaluate("9.6 + 19 * (source.value.slice(0, source.selectionStart).split('\\n').length - 1) - source.scrollTop")
+        assert words["height"] > 100 and text["y"] - 1 < words["y"] and words["y"] + words["height"] < text["y"] + text["height"] + 1
+        assert text["y"] < line < text["y"] + text["height"] - 19 and min(abs(words["y"] + words["height"] - line), abs(words["y"] - line - 19)) < 2
+        page.locator("#completions li", has_text="particle").first.tap()
+        assert '<particle name="" mass="" x="" y=""/>' in page.locator("#source").input_value()
+        page.wait_for_timeout(1000)
+        assert page.locator("#messages").inner_text() == "" and page.locator("#state").inner_text().startswith("derived")
+        page.keyboard.type("second")
+        page.wait_for_function("document.getElementById('state').textContent === '3 errors'")
+
+
+def test_ghosts_of_the_first_example(browser, tmp_path):
+    """
+    The bead of README.md leaves its lowest point. Linearized, theta'' + b/(m R^2) theta' = (W^2 - g/R) theta. Its curves end where theta or
+    omega is further above its range than the range is wide. The axes contain a bead with kept values, and its rod is drawn.
+    """
+    text = re.search(r'<system name="BeadOnHoop".*?</system>', (ROOT / "README.md").read_text(), re.S)[0]
+    with editor(browser, write_page(tmp_path, "SimplePendulum")) as page:
+        run_anew(page, text)
+        frame = page.query_selector("#page").content_frame()
+        frame.select_option("#ghost", "linear")
+        frame.wait_for_function("live.history.runs === 2 && live.history.times.at(-1) > 3")
+        frame.click("#play")
+        frame.wait_for_timeout(300)
+        times, samples, end = frame.evaluate("[live.history.times, live.history.samples.map(([run]) => ['theta', 'omega'].map((name) => run[live.names.indexOf(name)])), live.ghostEnd(0, live.history.length)]")
+        slow, fast = np.roots([1, 0.01 / (0.1 * 0.25), -(36 - 9.81 / 0.5)])
+        closed = lambda t: 0.1 / (fast - slow) * np.array([fast * np.exp(slow * t) - slow * np.exp(fast * t), fast * slow * (np.exp(slow * t) - np.exp(fast * t))])
+        low, high = np.min(samples, axis=0), np.max(samples, axis=0)
+        limit = high + (0.06 + 1.12) * (high - low)  # a range has margins of 6%
+        assert (closed(times[end - 1]) <= limit).all() and (closed(times[end]) > limit).any() and 0.5 < times[end] < 1.5
+        assert [plot[1] < 3 for plot in frame.evaluate("[live.plots[0].range, live.plots[2].range]")] == [True, True]
+        frame.select_option("#ghost", "kept")
+        for name, value in (("W", "5"), ("theta", "0.2")):
+            frame.get_by_role("spinbutton", name=name, exact=True).fill(value)
+            frame.get_by_role("spinbutton", name=name, exact=True).press("Enter")
+        frame.click("#reset")
+        frame.click("#play")
+        frame.wait_for_function("live.history.times.at(-1) > 2")
+        largest = frame.evaluate("Math.max(...live.history.samples.map((runs) => runs[1][live.names.indexOf('theta')]))")
+        assert frame.evaluate("live.plots[0].range[1]") > largest > 1.3
+        assert frame.inner_text("#pale") == "pale: kept, with W = 6 rad/s, theta = 0.1 rad"
+        assert frame.evaluate("live.scene.ghostRods.map(({ mesh, group }) => group.visible && mesh.visible && mesh.scale.y)") == [pytest.approx(0.5, rel=1e-9)]
 
 
 def test_equilibrium_and_linearization(browser, tmp_path):

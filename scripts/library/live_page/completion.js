@@ -2,6 +2,7 @@
 "use strict";
 
 const LINE_HEIGHT = 19; // px, the height of a line in editor.css
+const LONGEST_LIST = 240; // px
 
 // Completes words of the language in a text area. Enter or Tab accepts one, the arrows choose, Escape closes the list. Returns the function that opens the list.
 function addCompletion(source, list, language) {
@@ -22,22 +23,24 @@ function addCompletion(source, list, language) {
       item.id = `word${i}`;
       item.setAttribute("role", "option");
       item.setAttribute("aria-selected", i === chosen);
-      item.addEventListener("pointerdown", (event) => {
-        event.preventDefault(); // the text keeps the focus
-        accept(i);
-      });
+      item.addEventListener("mousedown", (event) => event.preventDefault()); // the text keeps the focus
+      item.addEventListener("click", () => accept(i));
       return item;
     }));
+    moveToCaret();
     list.children[chosen]?.scrollIntoView({ block: "nearest" });
     source.setAttribute("aria-activedescendant", `word${chosen}`);
   }
 
+  // Places the list below the caret's line, or above it where there is more space.
   function moveToCaret() {
     const lines = source.value.slice(0, source.selectionStart).split("\n"), style = getComputedStyle(source);
     const x = parseFloat(style.paddingLeft) + width * (lines.at(-1).length - shown.word.length) - source.scrollLeft;
     const y = parseFloat(style.paddingTop) + LINE_HEIGHT * lines.length - source.scrollTop;
+    const below = source.clientHeight - y, above = y - LINE_HEIGHT, isBelow = below >= Math.min(above, LONGEST_LIST);
+    list.style.maxHeight = `${Math.min(LONGEST_LIST, isBelow ? below : above)}px`;
     list.style.left = `${Math.max(0, Math.min(x, source.clientWidth - list.offsetWidth))}px`;
-    list.style.top = y + list.offsetHeight > source.clientHeight ? `${Math.max(0, y - LINE_HEIGHT - list.offsetHeight)}px` : `${y}px`;
+    list.style.top = `${isBelow ? y : above - list.offsetHeight}px`;
   }
 
   function complete(isRequested) {
@@ -50,7 +53,6 @@ function addCompletion(source, list, language) {
     [shown, chosen] = [found, 0];
     list.hidden = false;
     draw();
-    moveToCaret();
   }
 
   function accept(i) {
@@ -77,7 +79,8 @@ function addCompletion(source, list, language) {
 
   source.addEventListener("keydown", onKey);
   source.addEventListener("input", (event) => event.inputType?.startsWith("insert") && event.data !== null && event.data.length === 1 ? complete(false) : close());
-  for (const event of ["blur", "scroll", "click"]) source.addEventListener(event, close);
+  for (const event of ["blur", "click"]) source.addEventListener(event, close);
+  source.addEventListener("scroll", () => list.hidden || moveToCaret());
   return complete;
 }
 

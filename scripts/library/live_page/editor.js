@@ -28,12 +28,24 @@ function messageOf(line) {
   return name in files ? { name, line: Number(found[2] ?? 0), isWarning: Boolean(found[3]), text: found[4] } : { name: file, line: 0, isWarning: false, text: line };
 }
 
-function goTo({ name, line }) {
-  openFile(name);
-  const starts = [0, ...[...$("source").value.matchAll(/\n/g)].map((end) => end.index + 1)], at = starts[line - 1] ?? 0;
-  $("source").focus();
-  $("source").setSelectionRange(at, (starts[line] ?? $("source").value.length + 1) - 1);
-  $("source").scrollTop = Math.max(0, (line - 5) * LINE_HEIGHT);
+// Returns the range of a message's mistake in a text. It is the first quoted word of the message that is in its line, or else the line.
+function rangeOfMistake(source, { line, text }) {
+  const lines = source.split("\n"), begin = lines.slice(0, line - 1).reduce((sum, { length }) => sum + length + 1, 0), content = lines[line - 1] ?? "";
+  for (const [, word] of text.matchAll(/'([^']+)'/g)) {
+    const escaped = word.replace(/[^\w\s]/g, "\\$&"), found = new RegExp(`(?<!\\w)${escaped}(?!\\w)|${escaped}`).exec(content);
+    if (found) return [begin + found.index, begin + found.index + word.length];
+  }
+  return [begin + content.length - content.trimStart().length, begin + content.length];
+}
+
+// Selects a message's mistake, and scrolls to it.
+function goTo(message) {
+  if (opened !== message.name) openFile(message.name);
+  const source = $("source"), [begin, end] = rangeOfMistake(source.value, message), column = begin - source.value.lastIndexOf("\n", begin - 1) - 1;
+  source.focus();
+  source.setSelectionRange(begin, end);
+  source.scrollTop = Math.max(0, (message.line - 5) * LINE_HEIGHT);
+  source.scrollLeft = Math.max(0, (column + Math.min(end - begin, 20) + 5) * widthOfLetter(source) - source.clientWidth);
 }
 
 function showMessages(messages) {
@@ -47,14 +59,14 @@ function showMessages(messages) {
     return item;
   });
   $("messages").replaceChildren(...items);
-  showLines(new Set(messages.filter(({ name, isWarning }) => name === opened && !isWarning).map(({ line }) => line)));
+  showLines(messages.filter(({ name, isWarning, line }) => name === opened && !isWarning && line > 0));
 }
 
-function showLines(wrong = new Set()) {
-  const count = $("source").value.split("\n").length;
+function showLines(mistakes = []) {
+  const count = $("source").value.split("\n").length, wrong = new Set(mistakes.map(({ line }) => line));
   const marks = Array.from({ length: count }, (_, i) => (wrong.has(i + 1) ? `<span class="wrong">${i + 1}</span>` : i + 1));
   $("lines").innerHTML = `${marks.join("\n")}\n`;
-  $("colors").innerHTML = `${highlighted($("source").value)}\n`;
+  $("colors").innerHTML = `${highlighted($("source").value, mistakes.map((mistake) => rangeOfMistake($("source").value, mistake)))}\n`;
   scrollTogether();
 }
 
@@ -71,6 +83,8 @@ function insertElement(complete) {
   source.focus();
   source.setSelectionRange(at, at);
   document.execCommand("insertText", false, "\n  <");
+  source.scrollTop = (source.value.slice(0, at).split("\n").length - 1) * LINE_HEIGHT; // leaves space below for the list
+  source.scrollLeft = 0;
   complete(true);
 }
 
@@ -143,6 +157,9 @@ function save(name, content, type) {
   URL.revokeObjectURL(link.href);
 }
 
+// Returns the name for a saved file: that of the system or robot in it, or else that of the file.
+const savedName = (path) => /<(?:system|robot)\b[^>]*?\sname\s*=\s*["']([^"'<]+)/.exec(files[path])?.[1] ?? path.split("/").pop().replace(/\.[^.]*$/, "");
+
 // Returns this page with the present files.
 function pageNow() {
   const now = JSON.stringify({ ...data, files, file, robot }).replaceAll("<", "\\u003c");
@@ -152,8 +169,14 @@ function pageNow() {
 function onInput() {
   files = { ...files, [opened]: $("source").value };
   showLines();
+  checkSoon();
+}
+
+// Checks after a pause in typing; not while a word is chosen from the list, or an empty value is filled.
+function checkSoon() {
+  const isComplete = ({ value, selectionStart: at }) => $("completions").hidden && value.slice(at - 1, at + 1) !== '""';
   clearTimeout(timer);
-  timer = setTimeout(check, PAUSE);
+  timer = setTimeout(() => (isComplete($("source")) ? check() : checkSoon()), PAUSE);
 }
 
 // Types two spaces for Tab, and repeats the indentation after Enter. Tab after Escape leaves the text.
@@ -195,8 +218,8 @@ function addActions() {
   $("source").addEventListener("keydown", indent);
   $("source").addEventListener("scroll", scrollTogether);
   $("files").addEventListener("change", () => openFile($("files").value));
-  $("saveFile").addEventListener("click", () => save(opened.split("/").pop(), files[opened], "text/xml"));
-  $("savePage").addEventListener("click", () => save(`${file.split("/").at(-2) ?? "system"}.html`, pageNow(), "text/html"));
+  $("saveFile").addEventListener("click", () => save(`${savedName(opened)}.${opened.split(".").pop()}`, files[opened], "text/xml"));
+  $("savePage").addEventListener("click", () => save(`${savedName(file)}-edit.html`, pageNow(), "text/html"));
   $("divider").addEventListener("pointerdown", (event) => $("divider").setPointerCapture(event.pointerId));
   $("divider").addEventListener("pointermove", (event) => {
     if (!$("divider").hasPointerCapture(event.pointerId)) return;

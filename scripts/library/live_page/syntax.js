@@ -27,10 +27,14 @@ function tokensOf(text) {
   return tokens;
 }
 
-// Returns the text as HTML in which each token has its kind as a class.
-function highlighted(text) {
-  const escape = (part) => part.replace(/&/g, "&amp;").replace(/</g, "&lt;");
-  return tokensOf(text).map(([kind, begin, end]) => (kind === "text" ? escape(text.slice(begin, end)) : `<span class="${kind}">${escape(text.slice(begin, end))}</span>`)).join("");
+// Returns the text as HTML in which each token has its kind as a class. Parts in the ranges of mistakes, [begin, end] each, have the class "wrong", too.
+function highlighted(text, mistakes = []) {
+  const escape = (part) => part.replace(/&/g, "&amp;").replace(/</g, "&lt;"), ends = mistakes.flat().sort((a, b) => a - b);
+  const partsOf = ([kind, begin, end]) => {
+    const cuts = [begin, ...ends.filter((at) => begin < at && at < end), end];
+    return cuts.slice(1).map((to, i) => [mistakes.some(([from, after]) => from <= cuts[i] && to <= after) ? `${kind} wrong` : kind, escape(text.slice(cuts[i], to))]);
+  };
+  return tokensOf(text).flatMap(partsOf).map(([kind, part]) => (kind === "text" ? part : `<span class="${kind}">${part}</span>`)).join("");
 }
 
 // Returns the attributes of a tag from some of its tokens on.
@@ -73,9 +77,12 @@ function namesIn(text) {
   return [...new Set([...found.sort(), ...FUNCTIONS.map((name) => `${name}(`), ...OPERATORS, "pi", "time"])];
 }
 
+// Attributes that are not required, but that most elements of this name have.
+const USUAL = { particle: ["name", "x", "y"], body: ["name", "x", "y", "inertia", "angle"], point: ["x", "y"], line: ["to"], force: ["coordinate"], spring: ["stiffness", "length"], stop: ["min"], parameter: ["start"], mode: ["start"] };
+
 // Returns the text of a new element; "|" marks the position of the caret.
 function elementText(name, { attributes, contains, hasText }) {
-  const required = Object.entries(attributes).filter(([, { isRequired }]) => isRequired).map(([attribute]) => ` ${attribute}=""`).join("");
+  const required = Object.entries(attributes).filter(([attribute, { isRequired }]) => isRequired || USUAL[name]?.includes(attribute)).map(([attribute]) => ` ${attribute}=""`).join("");
   const text = `${name}${required}${contains.length || hasText ? `></${name}>` : "/>"}`;
   return required ? text.replace('""', '"|"') : text.replace(/><\/|\/>/, (end) => (end === "/>" ? "|/>" : ">|</"));
 }
