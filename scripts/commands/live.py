@@ -39,6 +39,8 @@ def main():
         parser.error("--edit takes no NAME=VALUE; expected values in the system itself")
     origin = origin_in(arguments.build, arguments.system, arguments.robot) if arguments.system else None
     try:
+        if not arguments.edit:
+            print(f"scripts/live: compiling {arguments.fmu.stem} to WebAssembly, which can take a minute ...", file=sys.stderr, flush=True)
         page = arguments.page or Path("build/live") / f"{arguments.fmu.stem}{'-edit' if arguments.edit else ''}.html"
         path = write_editor(arguments.system, LABORATORY, page, robot=arguments.robot) if arguments.edit else write_page(arguments.fmu, page, origin, settings_of(arguments.fmu, dict(arguments.settings)), arguments.build / "wasm")
     except Problem as problem:

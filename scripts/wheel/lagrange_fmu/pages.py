@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from .building import origin_of, robot_texts, robot_words, system_file
+from .building import origin_of, report, robot_texts, robot_words, system_file
 from .caching import share_zig_cache
 from .live_page.editor import write_editor
 from .live_page.page import write_page
@@ -29,5 +29,6 @@ def live(system, settings=None, output=None, edit=False, robot=None):
     if edit:
         return editor(system, output, robot)
     share_zig_cache()
+    report(f"compiling {system} to WebAssembly, which can take a minute ...")
     with fmu_of(system, words=robot_words(robot)) as fmu:
         return write_page(fmu, output or Path(f"{fmu.stem}.html"), None if is_fmu(system) else origin_of(system, robot_words(robot)), settings_of(fmu, settings))
