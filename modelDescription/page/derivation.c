@@ -278,6 +278,7 @@ void write_derivation(struct Page *page) {
   bool is_large = equations->count > COORDINATE_LIMIT || inertia_has_trees(equations->inertia);
   page_heading(page, "Derivation");
   if (is_large)
-    page_paragraph(page, "The steps are shown for systems of at most 5 coordinates without trees of bodies.");
+    page_paragraph(page,
+                   "The steps are shown for systems of at most 5 coordinates whose bodies form no tree of joints.");
   else write_steps(page);
 }
