@@ -12,10 +12,10 @@ class EnergyBar {
     };
     const names = ["kinetic", "potential"];
     this.parts = names.map((name) => named("i", name));
-    this.numbers = ["kinetic", "potential", "full length"].map(() => named("b", ""));
-    const legend = names.map((name, i) => named("span", "", named("i", name), ` ${name}${i ? " above its least" : ""} `, this.numbers[i]));
-    element.replaceChildren(named("div", "bar", ...this.parts), ...legend, named("span", "", "full length ", this.numbers[2]));
-    element.title = "kinetic energy, and potential energy above its least value so far; the full length is their largest sum so far";
+    this.numbers = ["kinetic", "potential", "sum"].map(() => named("b", ""));
+    const legend = names.map((name, i) => named("span", "", named("i", name), ` ${name}${i ? " above least" : ""} `, this.numbers[i]));
+    element.replaceChildren(named("div", "bar", ...this.parts), ...legend, named("span", "", "full bar ", this.numbers[2]));
+    element.title = "kinetic energy, and potential energy above its least value so far; the full bar is their largest sum so far";
   }
 
   // Learns the least potential energy from samples of the present system.
