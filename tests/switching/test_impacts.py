@@ -90,6 +90,18 @@ BLOCK = """<system name="RockingBlock" description="Slender block that rocks on 
   <experiment stopTime="3"/>
 </system>"""
 
+LANDING = """<system name="FlatLanding" description="Body that lands flat on five feet with friction">
+  <parameter name="mu" start="1"/><parameter name="h" start="0.5"/>
+  <coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy" start="h"/><coordinate name="theta" velocity="w"/>
+  <body mass="1" x="x" y="y" inertia="0.3" angle="theta"/>
+  <potential>9.81*y</potential>
+  <for index="i" from="1" to="5">
+    <contact name="foot[i]" gap="y + (i - 3)/2*sin(theta) - h*cos(theta)"/>
+    <friction name="rub[i]" velocity="vx + (h*cos(theta) + (i - 3)/2*sin(theta))*w" force="mu*foot[i].force"/>
+  </for>
+  <experiment stopTime="1"/>
+</system>"""
+
 INCLINE = """<system name="BallOnIncline" description="Ball that bounces down an incline with friction">
   <parameter name="e" start="0.97"/><parameter name="mu" start="0.3"/><parameter name="a" start="0.2"/>
   <coordinate name="s" velocity="vs"/><coordinate name="h" velocity="vh" start="0.1"/><coordinate name="phi" velocity="w"/>
@@ -130,6 +142,7 @@ SYSTEMS = {
     "PainleveRod": ROD,
     "Wedge": WEDGE,
     "RockingBlock": BLOCK,
+    "FlatLanding": LANDING,
     "BallOnIncline": INCLINE,
     "BallOnBall": TOWER,
     "Masses12": sledge("Masses12", 12),
@@ -531,6 +544,17 @@ def test_a_block_without_friction_slides_on_its_feet(open_fmu):
         assert instance.get("vx") == pytest.approx(0, abs=1e-12)
     to(instance, 5.0)
     assert instance.get("w") == pytest.approx(0, abs=1e-12)
+
+
+@pytest.mark.parametrize("mu", np.arange(1, 20) / 10)
+@pytest.mark.parametrize("vx", [0.2, 0.5, 1.0, 2.0, 3.0])
+def test_a_body_lands_flat_on_many_feet(open_fmu, mu, vx):
+    """It stays flat, as the resultant force passes the height h of the centre between the feet at -1 and 1: it then slides or sticks."""
+    h, vy = 0.5, -1.0
+    after = max(vx + mu * vy, 0.0)
+    assert h * (vx - after) < 1.0  # the offset of the resultant
+    instance = open_fmu("FlatLanding").initialize({"mu": mu, "vx": vx, "vy": vy})
+    assert instance.get("vx", "vy", "w") == pytest.approx([after, 0.0, 0.0], abs=1e-9)
 
 
 @pytest.mark.parametrize("mu", [0.05, 0.1, 0.15, 0.2, 0.25, 0.4, 3.0])

@@ -3,9 +3,9 @@
  * z0, from a large z0 at z = 0 down to z0 = 0. Of each pair w_i, z_i one is 0 throughout; the partner of the
  * variable that leaves the basis enters next. Ties of the ratio test are broken lexicographically by the rows of
  * the inverse of the basis. So in exact arithmetic no basis returns, and the path is finite. A pivot costs O(n^2).
- * The path is given up at a secondary ray (no row can leave) or after PIVOTS_A_ROW n pivots. Then it is tried again
- * with a larger tolerance for ties. Reference: Cottle, Pang and Stone, The Linear Complementarity Problem, chapter
- * 4.
+ * Columns that decide are refined, since rows of M may differ by a regularization alone. The path is given up at a
+ * secondary ray (no row can leave) or after PIVOTS_A_ROW n pivots. Then it is tried again with a larger tolerance for
+ * ties. Reference: Cottle, Pang and Stone, The Linear Complementarity Problem, chapter 4.
  */
 #include "nonsmooth/contacts/complementarity.h"
 
@@ -29,30 +29,36 @@ static const double least_differences[] = {1e-14, 1e-12, 1e-10};
  */
 struct LemkeTableau {
   size_t n, width;
+  const double *matrix, *q;
   double *row;   /* n x width */
   double *basis; /* the basic variable of each row, as an exact number */
+  double *residual;
   double least_difference;
 };
 
 size_t complementarity_work_count(size_t n) {
-  return n * (2 * n + 2) + n;
+  return n * (2 * n + 2) + 2 * n;
 }
 
 static double *tableau_row(const struct LemkeTableau *tableau, size_t i) {
   return tableau->row + i * tableau->width;
 }
 
+/* Returns an element of the equations before the first pivot. */
+static double coefficient(const struct LemkeTableau *tableau, size_t i, size_t column) {
+  size_t n = tableau->n;
+  if (column < n) return i == column ? 1.0 : 0.0;
+  if (column < 2 * n) return -tableau->matrix[i * n + column - n];
+  return column == 2 * n ? -1.0 : tableau->q[i];
+}
+
 static struct LemkeTableau fill_tableau(size_t n, const double *matrix, const double *q, double *work) {
-  struct LemkeTableau tableau = {.n = n, .width = 2 * n + 2, .row = work, .basis = work + n * (2 * n + 2)};
+  size_t width = 2 * n + 2;
+  double *basis = work + n * width;
+  struct LemkeTableau tableau = {n, width, matrix, q, work, basis, basis + n, 0.0};
   for (size_t i = 0; i < n; i++) {
-    double *row = tableau_row(&tableau, i);
-    for (size_t j = 0; j < n; j++) {
-      row[j] = i == j ? 1.0 : 0.0;
-      row[n + j] = -matrix[i * n + j];
-    }
-    row[2 * n] = -1.0;
-    row[2 * n + 1] = q[i];
-    tableau.basis[i] = (double)i;
+    for (size_t j = 0; j < width; j++) tableau_row(&tableau, i)[j] = coefficient(&tableau, i, j);
+    basis[i] = (double)i;
   }
   return tableau;
 }
@@ -67,6 +73,18 @@ static void pivot_at(const struct LemkeTableau *tableau, size_t leaving, size_t 
     row[entering] = 0.0;
   }
   tableau->basis[leaving] = (double)entering;
+}
+
+/* Refines a column x = B^-1 a iteratively: x + B^-1 (a - B x). The columns of w hold the inverse of the basis B. */
+static void refine_column(const struct LemkeTableau *tableau, size_t column) {
+  size_t n = tableau->n;
+  for (size_t i = 0; i < n; i++) {
+    tableau->residual[i] = coefficient(tableau, i, column);
+    for (size_t k = 0; k < n; k++)
+      tableau->residual[i] -= coefficient(tableau, i, (size_t)tableau->basis[k]) * tableau_row(tableau, k)[column];
+  }
+  for (size_t i = 0; i < n; i++)
+    for (size_t k = 0; k < n; k++) tableau_row(tableau, i)[column] += tableau_row(tableau, i)[k] * tableau->residual[k];
 }
 
 /* True if row i limits the entering variable before row k does, with ties broken. */
@@ -110,6 +128,7 @@ static bool follow_path(size_t n, const double *matrix, const double *q, double 
   for (size_t count = 0; count < PIVOTS_A_ROW * n; count++) {
     size_t left = (size_t)tableau.basis[leaving];
     pivot_at(&tableau, leaving, entering);
+    refine_column(&tableau, z0 + 1);
     if (left == z0) {
       for (size_t i = 0; i < n; i++)
         if (tableau.basis[i] >= (double)n)
@@ -117,6 +136,7 @@ static bool follow_path(size_t n, const double *matrix, const double *q, double 
       return true;
     }
     entering = left < n ? left + n : left - n;
+    refine_column(&tableau, entering);
     leaving = find_leaving(&tableau, entering);
     if (leaving == n) return false;
   }

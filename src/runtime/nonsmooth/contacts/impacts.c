@@ -43,11 +43,11 @@ static const double differing_share = 1e-8;
 /* Impacts at rates below this share of the largest velocity are rounding errors at rest. */
 static const double resting_share = 1e-9;
 
-/*
- * Proximal terms, added to the diagonal of the scaled Delassus matrix, in the order in which they are tried. The
- * next is used if Lemke's method fails with the one before because of rounding. Iterations remove their effect.
- */
-static const double regularizations[] = {1e-8, 1e-6, 1e-10, 1e-7};
+/* Proximal terms, added to the diagonal of the scaled Delassus matrix, in the order in which they are tried. */
+static const double regularizations[] = {1e-8, 1e-6};
+
+/* Relative residuals: above impulses_hold, the next proximal term is tried; impulses_roughly_hold is accepted at last. */
+static const double impulses_hold = 1e-12, impulses_roughly_hold = 1e-5;
 
 /*
  * The linear complementarity problem, scaled such that W_ii = 1 for each impulse. Rows: impulses of contacts; those of
@@ -154,35 +154,41 @@ static double fill_rates(const struct Resolution *resolution, struct ImpactProbl
   return largest;
 }
 
-/* Stores the next iterate. True if the proximal term still changes it beyond rounding. */
-static bool take_next(struct ImpactProblem *problem, double regularization) {
-  double change = 0.0, size = 0.0;
-  for (size_t i = 0; i < problem->count; i++) {
-    change = fmax(change, fabs(problem->next[i] - problem->z[i]));
-    size = fmax(size, fabs(problem->next[i]));
+/* Returns the residual of an iterate without regularization, max |min(z_i, w_i)|, relative to the largest impulse. */
+static double relative_residual(const struct ImpactProblem *problem, double regularization) {
+  size_t n = problem->count, regular = first_row(problem, 3);
+  double residual = 0.0, size = 1.0;
+  for (size_t i = 0; i < n; i++) {
+    double w = problem->rate[i] - (i < regular ? regularization * problem->next[i] : 0.0);
+    for (size_t j = 0; j < n; j++) w += problem->matrix[i * n + j] * problem->next[j];
+    residual = fmax(residual, fabs(fmin(w, problem->next[i])));
+    size = fmax(size, problem->next[i]);
   }
-  memcpy(problem->z, problem->next, problem->count * sizeof *problem->z);
-  return regularization * change > 0.1 * DBL_EPSILON * size;
+  return residual / size;
 }
 
 /*
- * Solves the problem by the proximal point method: Lemke's method for the matrix plus regularization, with q less
- * regularization times the last iterate. Ends when that changes nothing, after SOLUTIONS at the latest. False if
- * Lemke's method fails.
+ * Makes iterations of the proximal point method: Lemke's method for the matrix plus regularization, with q less
+ * regularization times the last iterate. They end when the residual falls no further: rounding errors add up in
+ * impulses that are not unique. Stores the best iterate in z, and its residual in *least.
  */
-static bool solve_regularized(struct ImpactProblem *problem, double regularization) {
+static void iterate_proximal(struct ImpactProblem *problem, double regularization, double *least) {
   size_t n = problem->count, regular = first_row(problem, 3);
-  bool is_solved = true, changes = true;
-  memset(problem->z, 0, n * sizeof *problem->z);
+  double last = INFINITY;
+  bool falls = true;
+  memset(problem->next, 0, n * sizeof *problem->next);
   for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] += regularization;
-  for (int count = 0; count < SOLUTIONS && is_solved && changes; count++) {
+  for (int count = 0; count < SOLUTIONS && falls; count++) {
     for (size_t i = 0; i < n; i++)
-      problem->q[i] = problem->rate[i] - (i < regular ? regularization * problem->z[i] : 0.0);
-    is_solved = complementarity_solve(n, problem->matrix, problem->q, problem->next, problem->work);
-    if (is_solved) changes = take_next(problem, regularization);
+      problem->q[i] = problem->rate[i] - (i < regular ? regularization * problem->next[i] : 0.0);
+    bool is_solved = complementarity_solve(n, problem->matrix, problem->q, problem->next, problem->work);
+    double residual = is_solved ? relative_residual(problem, regularization) : INFINITY;
+    if (residual < *least) memcpy(problem->z, problem->next, n * sizeof *problem->z);
+    *least = fmin(*least, residual);
+    falls = residual < last && residual > DBL_EPSILON;
+    last = residual;
   }
   for (size_t i = 0; i < regular; i++) problem->matrix[i * n + i] -= regularization;
-  return is_solved;
 }
 
 /* Returns the row of the first friction that acts in a plane; their number if there is none. */
@@ -211,15 +217,15 @@ static bool find_impulses(const struct Resolution *resolution, struct ImpactProb
   const struct ContactImpulses *impulses = problem->impulses;
   problem->share = share;
   if (find_plane(resolution, impulses) < impulses->count) return find_impulses_in_planes(resolution, problem);
-  double scale = fill_rates(resolution, problem, share);
-  bool is_solved = false;
-  for (size_t i = 0; i < sizeof regularizations / sizeof *regularizations && !is_solved; i++)
-    is_solved = solve_regularized(problem, regularizations[i]);
+  double scale = fill_rates(resolution, problem, share), residual = INFINITY;
+  memset(problem->z, 0, problem->count * sizeof *problem->z);
+  for (size_t i = 0; i < sizeof regularizations / sizeof *regularizations && residual > impulses_hold; i++)
+    iterate_proximal(problem, regularizations[i], &residual);
   for (size_t i = 0; i < impulses->count; i++) {
     double against = i < impulses->contact_count ? 0.0 : problem->z[i + impulses->friction_count];
     problem->impulse[i] = (problem->z[i] - against) * problem->unit[i] * scale;
   }
-  return is_solved;
+  return residual <= impulses_roughly_hold;
 }
 
 /* True if the work of the impulses is positive beyond rounding. */
