@@ -517,7 +517,8 @@ class Scene {
     const width = this.container.clientWidth || 1, height = this.container.clientHeight || 1;
     this.renderer.setPixelRatio(window.devicePixelRatio || 1);
     this.renderer.setSize(width, height);
-    const aspect = width / height;
+    const { offsetTop, offsetHeight } = this.container.parentElement.querySelector(".tools") || { offsetTop: 0, offsetHeight: 0 };
+    const lower = Math.max(height - offsetTop - offsetHeight, height / 2), aspect = width / lower; // below the controls
     if (this.plane) {
       const upAxis = this.up.findIndex((x) => x !== 0), across = this.plane.find((axis) => axis !== upAxis);
       const extent = (axis) => Math.max(this.frameBox.max.getComponent(axis) - this.centre.getComponent(axis), this.centre.getComponent(axis) - this.frameBox.min.getComponent(axis));
@@ -529,7 +530,7 @@ class Scene {
       if (!this.sized) this.camera.position.copy(this.controls.target).addScaledVector(this.outwards, distance);
       this.sized = true;
     }
-    this.camera.updateProjectionMatrix();
+    this.camera.setViewOffset(width, lower, 0, lower - height, width, height); // which also updates the projection
   }
 
   // Returns the distance of a camera that sees all corners of the frame. slope: the tangent of half its vertical angle.
