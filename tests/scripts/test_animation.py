@@ -177,10 +177,10 @@ def page_of_run(folder, name, start=None, **options):
 
 def test_the_view_follows(browser, tmp_path):
     """
-    The plate slides across the plane by many times its own length, and stays at the height of the view's middle. With "Follow" off it leaves the
+    The plate slides across the plane by many times its own length, and stays at the middle of the view below the controls. With "Follow" off it leaves the
     view. The four-bar linkage stays where it is, and so does its view.
     """
-    where = "() => { const { scene } = live, [x, y] = scene.pixels(scene.objects[0].position.setFromMatrixPosition(scene.objects[0].matrix)); return [x / scene.container.clientWidth, y / scene.container.clientHeight]; }"  # fmt: skip
+    where = "() => { const { scene } = live, tools = document.querySelector('.tools').getBoundingClientRect(), box = scene.container.getBoundingClientRect(), [x, y] = scene.pixels(scene.objects[0].position.setFromMatrixPosition(scene.objects[0].matrix)); return [x / box.width, (box.top + y - tools.bottom) / (box.bottom - tools.bottom)]; }"  # fmt: skip
     _, file = page_of_run(tmp_path, "KnifeEdge")
     with opened(browser, file) as page:
         paused(page)
