@@ -240,14 +240,14 @@ def validation_section(quick, progress):
 
 
 def settings_of_peers(samples):
-    """Return a table of the settings of which the fastest sufficient one counts, and what "never" means."""
+    """Return a table of the settings between which the times are interpolated, and what "never" means."""
     fmu = sorted({s.tolerance for s in samples if s.method == "shipped"}, reverse=True)
     rows = [["FMU, with each method", "tolerance", ", ".join(f"{value:g}" for value in fmu)]]
     for peer, (_, settings, _) in PEERS.items():
         used = {s.tolerance for s in samples if s.method == peer}
         kind = "step in s" if peer.startswith("MuJoCo") else "relative and absolute tolerance"
         rows += [[peer, kind, ", ".join(f"{value:g}" for value in settings if value in used)]] if used else []
-    text = "The fastest run that reaches the error counts. \"never\": no run with the settings of this table reaches it."
+    text = "Times to an error are interpolated between the settings. \"never\": no run with the settings of this table reaches it."
     return paragraphs([text]) + table(["program", "setting", "values"], rows)
 
 

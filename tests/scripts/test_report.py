@@ -19,6 +19,7 @@ from numerics.stiff import problems as stiff_problems
 from numerics.stiff.collocation import trajectory
 from numerics.stiff.comparison import Sample
 from numerics.stiff.problems import DEFINITIONS, PROBLEMS, StiffProblem, damped as damped_pendulum, elastic, right_states
+from numerics.work_precision import comparison as work_precision
 from numerics.work_precision.compiled import odeint
 from numerics.work_precision.scenarios import CLOSED_FORMS, states_of, times_of, values_of
 from rope import START, accelerations
@@ -88,6 +89,13 @@ def test_a_small_problem(built):
 def samples_of(method, factor):
     """Samples with errors of 1e-2, 1e-4, ..., and times that are powers of the errors."""
     return [Sample("P", "one step", method, 0.0, factor * error**-0.25, error) for error in (1e-2, 1e-4, 1e-6, 1e-8)]
+
+
+def test_times_are_interpolated():
+    """Time is a power of the error. A run that misses the error by little does not make the next tolerance count in whole."""
+    samples = [work_precision.Sample("P", method, 0.0, 0.0, error**-0.25, error, error) for method in ("a", "b") for error in (1e-2, 1.2e-10, 1e-14)]
+    assert work_precision.best_seconds(samples, "P", ["a", "b"], 1e-10) == pytest.approx(1e-10**-0.25)
+    assert work_precision.best_seconds(samples, "P", ["a"], 1e-15) == math.inf
 
 
 def test_ratios():

@@ -9,6 +9,7 @@ import numpy as np
 from scripts.pages.html_page import write_csv as write_csv_table
 from numerics.driver import SOLVERS, folder_of, step_repeatedly
 from numerics.failures import failure
+from numerics.times import time_to
 from numerics.work_precision.peers import PEERS
 from numerics.work_precision.scenarios import QUICK, SCENARIOS, error_at_end, errors, reference, states_of
 
@@ -103,10 +104,9 @@ def write_csv(samples, path, type_of_samples=Sample):
 
 
 def best_seconds(samples, name, methods, level, steps=None):
-    """Return the shortest time to an error at the end of at most `level`; infinite if no method reaches it."""
-    times = [s.seconds for s in samples if s.system == name and s.method in methods and s.error_at_end <= level
-             and (steps is None or s.step in (0.0, steps))]  # fmt: skip
-    return min(times, default=math.inf)
+    """Return the shortest time to an error at the end, interpolated between tolerances; infinite if no method reaches it."""
+    points = lambda method: [(s.seconds, s.error_at_end) for s in samples if s.system == name and s.method == method and (steps is None or s.step in (0.0, steps))]
+    return min(time_to(points(method), level) for method in methods)
 
 
 def rivals(samples):
