@@ -31,9 +31,9 @@ static const char *velocity_name(const struct Derivation *derivation, size_t i) 
   return derivation->model->velocities.items[i].name;
 }
 
-/* Returns the name of the generalized force along a coordinate. */
-static char *force_name(const struct Derivation *derivation, size_t i) {
-  return format_text("%s[%s]", derivation->force_name, coordinate_name(derivation, i));
+/* Returns a symbol, such as Q, with the name of a coordinate as its index. */
+static char *symbol_along(const struct Derivation *derivation, const char *symbol, size_t i) {
+  return format_text("%s[%s]", symbol, coordinate_name(derivation, i));
 }
 
 /* Finds dL/dv, dL/dq, d/dt dL/dv and the generalized forces Q, which include those of the dissipation. */
@@ -140,10 +140,10 @@ static void write_lagrange(const struct Derivation *derivation) {
     char *left = format_text("der(diff(%s, %s)) - diff(%s, %s)", name, velocity_name(derivation, i), name,
                              coordinate_name(derivation, i));
     if (constrained) left = format_text("%s + %s", left, derivation->reaction_name);
-    page_step_texts(page, left, has_forces ? force_name(derivation, i) : "0");
+    page_step_texts(page, left, has_forces ? symbol_along(derivation, derivation->force_name, i) : "0");
   }
   for (size_t i = 0; i < derivation->equations->count && has_forces; i++)
-    page_step_equation(page, force_name(derivation, i), derivation->force[i]);
+    page_step_equation(page, symbol_along(derivation, derivation->force_name, i), derivation->force[i]);
   page_paragraph(page, "Carried out, they are the equations of motion above.");
   if (constrained)
     page_paragraph(page,
@@ -250,9 +250,8 @@ static void write_conserved(const struct Derivation *derivation) {
   for (size_t i = 0; i < derivation->equations->count; i++) {
     if (!is_cyclic(derivation, i)) continue;
     count++;
-    page_step_equation(
-        page, format_text("%s[%s]", page_symbol(derivation->model, "p", "momentum"), coordinate_name(derivation, i)),
-        derivation->momentum[i]);
+    page_step_equation(page, symbol_along(derivation, page_symbol(derivation->model, "p", "momentum"), i),
+                       derivation->momentum[i]);
   }
   if (count == 0) page_paragraph(page, "Neither the energy nor the momentum of a coordinate is constant.");
   else if (page->model->switches.event_count + page->model->switches.contact_count > 0)

@@ -87,10 +87,12 @@ static char *upright(const char *text, size_t length) {
   return format_text("\\mathrm{%s}", close_text(&escaped));
 }
 
+static void append_latex(char **indices, char *index) {
+  *indices = *indices == NULL ? index : format_text("%s, %s", *indices, index);
+}
+
 static void append_index(char **indices, const char *text, size_t length) {
-  if (length == 0) return;
-  const char *index = isdigit((unsigned char)*text) ? part_of(text, length) : upright(text, length);
-  *indices = *indices == NULL ? copy_text(index) : format_text("%s, %s", *indices, index);
+  if (length > 0) append_latex(indices, isdigit((unsigned char)*text) ? part_of(text, length) : upright(text, length));
 }
 
 /* Returns the length of a word's base, before its index: of omega in omegaCoupler, and of x in x_end. */
@@ -151,8 +153,7 @@ static size_t length_without_number(const char *word, size_t length) {
 static void append_bracket(const struct Model *model, char **indices, const char *bracket) {
   size_t length = bracket_length(bracket);
   const char *inside = part_of(bracket + 1, length - 2);
-  char *index = isdigit((unsigned char)*inside) ? copy_text(inside) : symbol(model, inside, 0);
-  *indices = *indices == NULL ? index : format_text("%s, %s", *indices, index);
+  append_latex(indices, isdigit((unsigned char)*inside) ? copy_text(inside) : symbol(model, inside, 0));
 }
 
 /*
@@ -161,12 +162,12 @@ static void append_bracket(const struct Model *model, char **indices, const char
  * to is the last index. The force of a constraint is lambda, and another loop.force is F, both with the name of the loop.
  */
 static char *symbol(const struct Model *model, const char *name, int dots) {
+  if (strcmp(name, "time") == 0) return copy_text(page_symbol(model, "t", "\\mathrm{time}"));
   const char *point = last_point(name), *word = point != NULL ? point + 1 : name,
              *coordinate = coordinate_of(model, name);
   size_t length = strcspn(word, "["), digits = word[length] == '[' ? length : length_without_number(word, length);
   size_t base = base_length(word, digits), after = base + (base < digits && word[base] == '_');
   char *indices = NULL;
-  if (strcmp(name, "time") == 0) return copy_text(page_symbol(model, "t", "\\mathrm{time}"));
   if (coordinate != NULL) {
     indices = symbol(model, coordinate, 0);
     base = 1;

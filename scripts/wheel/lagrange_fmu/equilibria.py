@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from fmpy.fmi1 import FMICallException
 
-from .linearization import Linearization, SwitchesEverywhere, linearization_at, tangents
+from .linearization import Linearization, SwitchesEverywhere, linearization_at, tangents, values_as_text
 from .model_exchange import opened
 from .problem import Problem
 from .quantities import numbers_of
@@ -54,7 +54,7 @@ class Equilibrium:
     constraints: list[str]
 
     def __repr__(self):
-        lines = [f"{name} = {value if abs(value) > 1e-15 else 0:.9g}" for name, value in (self.point | self.outputs).items()]
+        lines = values_as_text(self.point | self.outputs)
         lines += [f"contacts that stay closed and frictions that stay stuck: {', '.join(self.constraints)}"] if self.constraints else []
         if self.linearization is None:
             return "\n".join([*lines, f"{self.stability}: the system switches there, such as a contact that touches without force or friction at its limit"])

@@ -24,6 +24,11 @@ COORDINATE, OTHER = 0.02, 0.3  # length of a row relative to the longest one, ab
 UNEVEN = 1e-6  # relative difference of P^2 and P above which a mode has switched
 
 
+def values_as_text(values):
+    """Return "name = value" for each of these; rounding errors of 0 are 0."""
+    return [f"{name} = {value if abs(value) > 1e-15 else 0:.9g}" for name, value in values.items()]
+
+
 class Linearization(NamedTuple):
     """
     A linearized system: der(x - x0) = A (x - x0) + B (u - u0) + der(x0),  y - y0 = C (x - x0) + D (u - u0), in SI units.

@@ -18,8 +18,7 @@ enum ProductExpansion {
 
 struct Term {
   double coefficient;
-  double
-      magnitude; /* the largest partial sum of which the coefficient is what remained; 0 for the coefficient itself */
+  double magnitude; /* of the largest partial sum that led to the coefficient; 0: the coefficient is no sum */
   double exponents[ATOM_ROOM];
 };
 

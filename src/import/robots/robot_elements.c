@@ -58,14 +58,15 @@ xmlNodePtr write_motor(const struct Writer *writer, const char *name, const char
                        const char *description) {
   bool is_length = strcmp(unit, "m") == 0;
   const char *kind = is_length ? "force" : "torque", *unit_of_effort = is_length ? "N" : "N.m";
+  const char *direction = format_text("%s %s", is_length ? "along" : "about", name);
   xmlNodePtr coordinate = write_coordinate(writer, name, unit, description);
   char *wanted = format_text("%s_%s", name, kind);
   if (!isnan(effort))
     set_attribute(write_parameter(writer, format_text("%s_effort", name), effort, unit_of_effort,
-                                  format_text("largest %s %s %s", kind, is_length ? "along" : "about", name)),
+                                  format_text("largest %s %s", kind, direction)),
                   "min", number(0));
   write_element(writer, "input", "name", wanted, "unit", unit_of_effort, "description",
-                format_text("%s %s %s", kind, is_length ? "along" : "about", name), NULL);
+                format_text("%s %s", kind, direction), NULL);
   set_content(write_element(writer, "force", "coordinate", name, NULL),
               isnan(effort) ? wanted : format_text("max(-%s_effort, min(%s_effort, %s))", name, name, wanted));
   return coordinate;

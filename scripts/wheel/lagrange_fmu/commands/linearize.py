@@ -21,7 +21,9 @@ def text_of(found):
     """Return a linearization as text."""
     import numpy as np
 
-    parts = ["at " + ", ".join(f"{name} = {value if abs(value) > 1e-15 else 0:.9g}" for name, value in found.point.items())]
+    from ..linearization import values_as_text
+
+    parts = ["at " + ", ".join(values_as_text(found.point))]
     if found.constraints:
         parts.append(f"contacts that stay closed and frictions that stay stuck: {', '.join(found.constraints)}")
     rates = [f"der({state})" for state in found.states]

@@ -14,18 +14,21 @@ static const size_t velocities[JOINT_TYPES] = {[REVOLUTE] = 1, [PRISMATIC] = 1, 
 static xmlNodePtr find_key(struct Mjcf *mjcf) {
   const char *name = mjcf->file.options->keyframe;
   struct SimilarName similar = {.wanted = name};
-  const char *names = NULL;
+  const char **names = NULL;
+  size_t count = 0;
   for (xmlNodePtr section = mjcf->root->children; section != NULL; section = section->next)
     for (xmlNodePtr key = is_element(section, "keyframe") ? section->children : NULL; key != NULL; key = key->next) {
       if (!is_element(key, "key")) continue;
       if (attribute_is(key, "name", name)) return key;
       if (!has_attribute(key, "name")) continue;
-      similar_consider(&similar, attribute(key, "name"));
-      names = names == NULL ? attribute(key, "name") : format_text("%s, %s", names, attribute(key, "name"));
+      const char *known = attribute(key, "name");
+      similar_consider(&similar, known);
+      APPEND(names, count, known);
     }
-  report_error(
-      mjcf->file.diagnostics, mjcf->file.robot->line, "there is no <key> '%s'; %s", name,
-      suggestion(similar.best, names == NULL ? "the file has none" : format_text("expected one of %s", names)));
+  const char *expected =
+      count > 0 ? format_text("expected one of %s", list_of_names(names, count)) : "the file has none";
+  report_error(mjcf->file.diagnostics, mjcf->file.robot->line, "there is no <key> '%s'; %s", name,
+               suggestion(similar.best, expected));
   return NULL;
 }
 
