@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from fmpy.fmi1 import FMICallException
 from scipy.integrate import solve_ivp
+from scipy.optimize import nnls
 
 from fmu import DISCARD, ERROR, build_systems
 from test_switching import events, to
@@ -185,6 +186,23 @@ class Contacts:
     def start(self, instance):
         instance.reset().initialize(self.values())
         return np.array(instance.get(*[f"v{i}" for i in range(SIZE)]))
+
+
+def test_impacts_without_restitution_project_the_velocities(open_fmu):
+    """Moreau: without friction, a plastic impact of all touching contacts projects the velocities onto J v >= 0 in the metric of M."""
+    instance, rng = open_fmu("RandomContacts"), np.random.default_rng(5)
+    struck = []
+    for _ in range(100):
+        case = Contacts(rng, largest_mu=0.0)
+        case.force[:], case.e[:] = 0.0, 0.0
+        root = np.linalg.cholesky(case.mass)
+        effects = np.linalg.solve(root, case.n[: case.count].T)
+        impulse = nnls(effects, -root.T @ case.v)[0]
+        projected = case.v + np.linalg.solve(root.T, effects @ impulse)
+        size = np.sqrt(case.v @ case.mass @ case.v)
+        assert root.T @ case.start(instance) == pytest.approx(root.T @ projected, abs=1e-9 * size)
+        struck.append(np.sum(impulse > 0))
+    assert min(struck) == 0 and max(struck) == CONTACTS
 
 
 @pytest.mark.parametrize("tied", [False, True])

@@ -50,7 +50,7 @@ struct Resolution {
   bool has_stuck_again;                   /* frictions at their limits at rest have stuck again */
   bool has_searched_jam;                  /* all modes of frictions at rest were tried */
   bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
-  int impacts, lifts;
+  int impacts, plastic_impacts, lifts;    /* plastic_impacts: those of all contacts that touch */
   double least_acceleration; /* smaller ones are rounding errors of the last solution for frictions at rest */
   struct {
     size_t friction;        /* the last one to switch, if no force changed since; else friction_count */

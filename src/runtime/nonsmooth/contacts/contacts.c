@@ -1,10 +1,11 @@
 /*
  * Contacts: impacts, rest and parting. An impact takes the touching contact that closes fastest, together with
  * those as fast within rounding; the other touching contacts are open. Contacts that close because of it have
- * impacts of their own after it. So a row of touching bodies passes an impulse on (Newton's cradle). After
- * IMPACT_LIMIT impacts of an event all that touch are taken at once, without restitution. Contacts that come to rest
- * then may close others, which are taken in the same way; each time, kinetic energy is lost. If a contact closes after
- * PLASTIC_LIMIT of these, bodies are crushed, and the motion ends.
+ * impacts of their own after it. So a row of touching bodies passes an impulse on (Newton's cradle).
+ *
+ * All that touch are taken at once, without restitution, if none would bounce visibly, and after IMPACT_LIMIT impacts.
+ * Contacts that come to rest then may close others, which are taken in the same way. Each time, kinetic energy is lost.
+ * If a contact closes after PLASTIC_LIMIT of these, bodies are crushed, and the motion ends.
  *
  * act_once() makes one change a round. It opens contacts that were lifted or part, else takes an impact, else
  * closes contacts that come to rest. Otherwise it projects out penetrations, or opens the closed contact that pulls
@@ -79,6 +80,19 @@ static size_t find_impact(const struct Resolution *resolution) {
   return found;
 }
 
+/*
+ * True if the impact of a contact is taken by itself, and others follow from it. False for one of all that touch: none
+ * of them would bounce visibly at this speed, or there were too many impacts.
+ */
+static bool passes_on(const struct Resolution *resolution, size_t contact) {
+  double speed = -contact_value(resolution, contact, CONTACT_RATE);
+  bool any_bounces = false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    any_bounces |= is_touching(resolution, i) &&
+                   !bounce_is_lost(resolution, i, contact_value(resolution, i, CONTACT_RESTITUTION) * speed);
+  return any_bounces && resolution->impacts < IMPACT_LIMIT;
+}
+
 /* True if a contact still closes after an impact of all that touch. */
 static bool closes_clearly(const struct Resolution *resolution, size_t contact) {
   size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
@@ -100,19 +114,19 @@ static bool check_restitution(const struct Resolution *resolution, size_t contac
 }
 
 /*
- * Selects the contacts that close as fast as the given one, up to rounding, and all frictions; beyond IMPACT_LIMIT all
- * touching contacts. False after logging an invalid restitution.
+ * Selects all frictions, and the contacts that close as fast as the given one, up to rounding. If the impact does not
+ * pass on, it selects all touching contacts. False after logging an invalid restitution.
  */
-static bool choose_hit(struct Resolution *resolution, size_t contact) {
+static bool choose_hit(struct Resolution *resolution, size_t contact, bool passes) {
   const struct SwitchTable *switches = resolution->switches;
   size_t slot = contact_slot(switches, contact, CONTACT_RATE);
   double fastest = resolution->value[slot], error_bound = resolution->error_bound[slot];
-  bool bounces = resolution->impacts < IMPACT_LIMIT, is_fine = true;
+  bool is_fine = true;
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t rate = contact_slot(switches, i, CONTACT_RATE);
     double slower = resolution->value[rate] - fastest;
     bool is_tied = slower <= error_bound + resolution->error_bound[rate] - equal_share * fastest;
-    resolution->takes_part[i] = is_touching(resolution, i) && (is_tied || !bounces) ? 1.0 : 0.0;
+    resolution->takes_part[i] = is_touching(resolution, i) && (is_tied || !passes) ? 1.0 : 0.0;
     if (resolution->takes_part[i] == 0.0) continue;
     is_fine &= check_restitution(resolution, i);
     resolution->was_opened[i] = 0.0;
@@ -160,16 +174,18 @@ static bool let_stopped_slip(struct Resolution *resolution) {
 
 /* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
 static bool take_impact(struct Resolution *resolution, size_t contact) {
-  if (!choose_hit(resolution, contact)) return false;
+  bool passes = passes_on(resolution, contact);
+  if (!choose_hit(resolution, contact, passes)) return false;
   resolution_keep_modes(resolution);
   let_all_slide(resolution);
   open_all(resolution);
-  bool done = impacts_take(resolution, resolution->impacts < IMPACT_LIMIT);
+  bool done = impacts_take(resolution, passes);
   resolution_restore_modes(resolution);
   open_all(resolution);
   let_go(resolution);
   resolution->jumped = true;
   resolution->impacts++;
+  if (!passes) resolution->plastic_impacts++;
   return done && let_stopped_slip(resolution);
 }
 
@@ -558,7 +574,7 @@ static const char *act_once(struct Resolution *resolution, bool *again) {
   if (problem != NULL) return problem;
   if (((may_change && !resolution->jumped) || resolution->thrown) && open_parting(resolution)) return NULL;
   size_t contact = find_impact(resolution);
-  bool hits = contact<switches->contact_count, is_tried = resolution->impacts> IMPACT_LIMIT + PLASTIC_LIMIT;
+  bool hits = contact<switches->contact_count, is_tried = resolution->plastic_impacts> PLASTIC_LIMIT;
   if (hits && is_tried && closes_clearly(resolution, contact))
     return contact_forces_report_crushed(resolution, contact);
   if (hits && !is_tried) return take_impact(resolution, contact) ? NULL : report_singular_impact(resolution, contact);
