@@ -58,6 +58,9 @@ TEXTS = {
     "PushedCylinder": f"""<parameter name="rate" start="2" unit="N/s"/>{free("a", (0, 0, 0.1), 'type="cylinder" radius="0.06" length="0.2"')}
   <point name="top" in="a" z="0.02"/><shape name="floor" type="plane"/>{CONTACT.format("c", "aShape", "floor")}
   <force on="top" x="rate*time" y="0.3*rate*time"/>""",
+    "PushedSlab": f"""<parameter name="Fx" start="0" unit="N"/><parameter name="Fy" start="0" unit="N"/>
+  {free("a", (0, 0, 0.1), 'type="box" sizeX="0.3" sizeY="0.3" sizeZ="0.2"')}<point name="top" in="a" z="0.1"/><shape name="floor" type="plane"/>
+  {CONTACT.format("c", "aShape", "floor")}<force on="top" x="Fx" y="Fy"/>""",
     # Corners on the floor and at one or two walls: where some stick, others cannot part.
     "BoxAtWall": AT_WALL,
     "BoxInCorner": AT_WALL
@@ -117,6 +120,23 @@ def test_thrown_boxes(thrown):
 def test_box_on_plate(mu, e, thrown, time):
     """The plate moves away from corners that would stick, with friction on one corner and on several."""
     run("BoxOnPlate", {"mu": mu, "e": e, "az": 0.4} | velocities(*thrown), time)[0].free()
+
+
+def test_slab_on_three_corners():
+    """The fourth corner touches without a force, and rounding of its gap makes no events."""
+    values = {"mu": 1.4254541200031945, "avx": 3.5145630763180904, "avy": -1.9242515374913545, "ar3": -1.993404335132431}
+    values |= {"Fx": -6.0044303761617, "Fy": -10.778350136403763}
+    instance = fmu.Instance("PushedSlab").initialize(values)
+    flat = 0
+    for _ in range(10):
+        instance.step(0.05)
+        forces = instance.get(*[f"c[{corner}].force" for corner in range(1, 9)])
+        if sum(force > 0 for force in forces) != 3:
+            continue
+        flat += 1
+        assert instance.get("az") == pytest.approx(0.1, abs=1e-12) and sum(forces) == pytest.approx(2 * 9.81, rel=1e-9)
+    assert flat > 3 and instance.fmu.getInteger(instance.vr("events"))[0] < 20
+    instance.free()
 
 
 @pytest.mark.parametrize("name, draw, time", [("BoxAtWall", 16, 2.0), ("BoxAtWall", 18, 3.0), ("BoxAtWall", 19, 3.0), ("BoxInCorner", 6, 1.0),
