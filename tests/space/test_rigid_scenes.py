@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import fmu
 from building import build_systems
@@ -32,6 +33,27 @@ AT_WALL = f"""{free("a", (-0.4, -0.4, 0.1), 'type="box" sizeX="0.2" sizeY="0.2" 
   <parameter name="Fx" start="0" unit="N/s"/><parameter name="Fy" start="0" unit="N/s"/><parameter name="Fz" start="0" unit="N/s"/>
   <parameter name="height" start="0" unit="m"/><point name="pushed" in="a" z="height"/><force on="pushed" x="Fx*time" y="Fy*time" z="Fz*time"/>
   <state name="given" unit="J" rate="time*(Fx*der(pushed.x) + Fy*der(pushed.y) + Fz*der(pushed.z))"/>"""
+FEET = {"TableOnFour": 4, "TableOnSix": 6}
+
+
+def place_of_foot(index, count):
+    return np.array([0.3 * math.cos(2 * math.pi * index / count + 0.1), 0.3 * math.sin(2 * math.pi * index / count + 0.1), -0.28])
+
+
+def table(count):
+    """A body on spherical feet, with a growing push beside its centre of mass."""
+    feet = ""
+    for index in range(count):
+        x, y, z = place_of_foot(index, count)
+        feet += f'<shape name="foot{index}" in="a" type="sphere" radius="0.02" x="{x}" y="{y}" z="{z}"/>'
+        feet += CONTACT.format(f"c{index}", f"foot{index}", "floor")
+    body = free("a", (0, 0, 0.3), "").replace('<shape name="aShape" in="a" />', "")
+    return f"""{body}<parameter name="rate" start="2" unit="N/s"/><parameter name="dir" start="0" unit="rad"/>
+  <parameter name="off" start="0" unit="m"/><shape name="floor" type="plane"/><point name="pushed" in="a" x="off" y="-0.5*off"/>{feet}
+  <force on="pushed" x="rate*time*cos(dir)" y="rate*time*sin(dir)"/>
+  <state name="given" unit="J" rate="rate*time*(cos(dir)*der(pushed.x) + sin(dir)*der(pushed.y))"/>"""
+
+
 HEAP = 12
 
 
@@ -66,6 +88,7 @@ TEXTS = {
     "BoxInCorner": AT_WALL
     + f'''<frame name="back"><translate y="-0.5"/><rotate axis="x" angle="-pi/2"/></frame><shape name="rear" in="back" type="plane"/>
   {CONTACT.format("r", "aShape", "rear")}''',
+    **{name: table(count) for name, count in FEET.items()},
     # The distance of ball and box contains a square root, which makes the search for events shorten its intervals.
     "BoxBesideBall": FLOOR + free("b", (0.05, 0, 0.6), 'type="sphere" radius="0.1"') + CONTACT.format("far", "bShape", "aShape"),
 }
@@ -152,6 +175,56 @@ def test_box_at_walls(name, draw, time):
         instance.step(0.1)
         energies.append(instance.get("totalEnergy") - instance.get("given"))
     assert np.diff(energies).max() < 1e-6
+    instance.free()
+
+
+@pytest.mark.parametrize(
+    "mu, rate, direction, off, time",
+    [
+        (1.4174313530799332, 19.54863040844638, 0.5076502300643817, 0.18220674959850888, 1.08),
+        (1.1722362704061469, 17.313360478316266, 4.379471222492805, 0.02825320436629486, 6),
+        (1.0617175138913386, 3.3027448783709192, 2.0321547557367214, 0.2793635596126901, 6),
+    ],
+)
+def test_pushed_table(mu, rate, direction, off, time):
+    """It tips over two feet, whose frictions hold it, as the forces of the other two vanish at the same time; then it slips."""
+    instance = fmu.Instance("TableOnFour").initialize({"mu": mu, "rate": rate, "dir": direction, "off": off})
+    energies = [instance.get("totalEnergy")]
+    while instance.time < time - 1e-9:
+        instance.step(0.12)
+        energies.append(instance.get("totalEnergy") - instance.get("given"))
+    assert np.diff(energies).max() < 1e-6
+    instance.free()
+
+
+def test_feet_that_jam_each_other():
+    """The forces of two feet grow without bound, each pressed by the other's friction."""
+    instance = fmu.Instance("TableOnFour").initialize({"mu": 0.8303383096343177, "rate": 8.012277556112187, "dir": 2.3518396878919012, "off": 0.29623349705594})
+    with instance.fails(fmu.DISCARD, "presses the contact 'c0' together ever more strongly, up to a jam"):
+        while instance.time < 6:
+            instance.step(0.12)
+    instance.free()
+
+
+def test_friction_that_held_a_foot_down():
+    """
+    Where it reaches its limit, the table rests on one foot. With the force of sliding the foot would not slide in its direction, while without a force
+    it lifts.
+    """
+    values = {"mu": 1.2851592071741287, "rate": 15.548462004593746, "dir": 0.20220721354621593, "off": 0.015059918198480349}
+    instance = fmu.Instance("TableOnSix").initialize(values)
+    feet = np.array([place_of_foot(index, 6) for index in range(6)])
+
+    def lowest():
+        turn = Rotation.from_quat(instance.get("aq1", "aq2", "aq3", "aq0"))
+        return instance.get("az") + turn.apply(feet)[:, 2].min() - 0.02
+
+    for target in [*np.arange(1, 15) * 0.12, 1.7954]:
+        instance.step(target - instance.time)
+    force, *friction = instance.get("c0.force", "c0.friction.force", "c0.friction.across.force")
+    assert abs(lowest()) < 1e-12 and force > 2 and 0.99 * values["mu"] * force < math.hypot(*friction) < values["mu"] * force
+    instance.step(0.01)
+    assert lowest() > 1e-5 and instance.get("c0.force") == 0
     instance.free()
 
 

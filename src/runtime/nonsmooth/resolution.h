@@ -107,6 +107,11 @@ struct FrictionLaws {
   bool (*explain_jam)(struct Resolution *resolution, size_t branch);
   /* Sets the modes of frictions in planes from start values, as guess of struct EventLaws; NULL without any. */
   void (*guess)(struct Instance *instance);
+  /*
+   * Finds the modes of contacts and frictions in planes at rest from all their forces at once (plane_forces.c), at most
+   * once in an event resolution. False if there are none. NULL without frictions in planes.
+   */
+  bool (*resolve_together)(struct Resolution *resolution);
   /* Lets the friction in a plane slide or stick; NULL without any. */
   void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
   /*

@@ -303,15 +303,31 @@ static const char *locking_friction(const struct Resolution *resolution, const s
   return resolution->switches->frictions[impulses->member[contacts + most]].name;
 }
 
-static const char *report_forces(const struct Resolution *resolution, const struct RestingContacts *resting,
-                                 const char *how_many) {
-  const struct ContactImpulses *impulses = &resting->impulses;
-  size_t contact = find_locked(resting);
+/* What a message about missing forces names. */
+struct Paradox {
+  const char *contact, *friction, *how_many; /* how_many solutions there are */
+};
+
+static struct Paradox find_paradox(const struct Resolution *resolution, const struct RestingContacts *resting,
+                                   const char *how_many) {
+  size_t row = find_locked(resting);
+  return (struct Paradox){.contact = resolution->switches->contacts[resting->impulses.member[row]].name,
+                          .friction = locking_friction(resolution, &resting->impulses, row),
+                          .how_many = how_many};
+}
+
+/*
+ * Finds the forces of frictions in planes at rest too, without which those of the contacts do not exist. Sets *again if
+ * that sets the modes. Else it logs the paradox, and returns the reason to stop.
+ */
+static const char *resolve_together(struct Resolution *resolution, const struct Paradox *paradox, bool *again) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  *again = laws->resolve_together != NULL && laws->resolve_together(resolution);
+  if (*again) return NULL;
   log_message(resolution->instance, resolution_status(resolution),
               "time %g: the force of the contact '%s' has %s solution, as the friction '%s' slides and presses it "
               "together (Painleve's paradox); expected less friction, or another position",
-              resolution->time, resolution->switches->contacts[impulses->member[contact]].name, how_many,
-              locking_friction(resolution, impulses, contact));
+              resolution->time, paradox->contact, paradox->how_many, paradox->friction);
   return "forces of contacts with friction are not determined";
 }
 
@@ -372,6 +388,7 @@ static bool any_begins_to_slide(const struct Resolution *resolution) {
 
 const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   struct RestingContacts resting;
+  struct Paradox paradox = {.how_many = NULL};
   *again = false;
   const char *problem = NULL;
   bool slides = choose_resting(resolution);
@@ -386,19 +403,46 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
     log_crushed(resolution, &resting.impulses, sinking);
     problem = crushed;
   } else if (numbers_of_solutions[solutions] != NULL)
-    problem = report_forces(resolution, &resting, numbers_of_solutions[solutions]);
+    paradox = find_paradox(resolution, &resting, numbers_of_solutions[solutions]);
   else if (closes) *again = take_solution(resolution, &resting);
   if (solutions == PERHAPS_OTHERS) report_others(resolution, &resting);
   free_resting(resolution, &resting);
-  return problem;
+  return paradox.how_many != NULL ? resolve_together(resolution, &paradox, again) : problem;
+}
+
+/*
+ * Returns what is left in gap j of the accelerations by forces of two contacts that cancel in gap i. A matrix that is
+ * scaled such that W_ii = 1 makes it 0 where both jam, and of order 1 elsewhere.
+ */
+static double left_by_pair(double ii, double ij, double ji, double jj) {
+  return ij < 0.0 ? (ii * jj - ij * ji) / (ii - ij) : INFINITY;
+}
+
+/* True if two contacts jam each other by their frictions: each presses the other together. Not by their gaps alone. */
+static bool jam_together(const struct RestingContacts *resting, size_t i, size_t j) {
+  size_t n = resting->forces.count;
+  const double *s = resting->forces.s;
+  double delassus = resting->impulses.delassus[i * resting->impulses.count + j] * resting->unit[i] * resting->unit[j];
+  return left_by_pair(s[i * n + i], s[i * n + j], s[j * n + i], s[j * n + j]) < jamming_share &&
+         !(left_by_pair(1.0, delassus, delassus, 1.0) < jamming_share);
+}
+
+/* Finds a contact that jams, by itself or with another; the number of contacts if there is none. */
+static size_t find_jammed(const struct RestingContacts *resting) {
+  size_t n = resting->forces.count, locked = find_locked(resting);
+  if (resting->forces.s[locked * n + locked] < jamming_share) return locked;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < n; j++)
+      if (i != j && jam_together(resting, i, j)) return i;
+  return n;
 }
 
 bool contact_forces_explain(struct Resolution *resolution) {
   struct RestingContacts resting;
   const char *problem;
   if (!choose_resting(resolution) || !create_resting(resolution, &resting, &problem)) return false;
-  size_t contact = find_locked(&resting);
-  bool jams = resting.forces.s[contact * resting.forces.count + contact] < jamming_share;
+  size_t contact = find_jammed(&resting);
+  bool jams = contact < resting.forces.count;
   if (jams)
     log_message(
         resolution->instance, STATUS_DISCARD,

@@ -54,6 +54,9 @@ static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
 /* Impulses by iteration may leave closing rates below this share of the gap's largest rate in the event. */
 static const double unresolved_share = 1e-6;
 
+/* Forces below this share of the largest one are rounding errors, where a body begins to tip over an edge. */
+static const double vanishing_share = 1e-13;
+
 /* Smaller speeds have no direction: their squares are close to underflow. */
 static const double least_speed = 1e-150;
 
@@ -479,6 +482,13 @@ static bool lift_start(struct Resolution *resolution) {
   return count == 0 || resolution_project_velocities(resolution);
 }
 
+/* Returns the force below which that of a contact has vanished with that of another one; 0 if none has opened. */
+static double vanishing_force(const struct Resolution *resolution) {
+  bool any_opened = false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) any_opened |= resolution->was_opened[i] > 0.0;
+  return any_opened ? vanishing_share * largest_contact_force(resolution) : 0.0;
+}
+
 /*
  * Returns the closed contact that pulls most; else one whose force has just reached 0, once an event; contact_count for
  * none.
@@ -486,7 +496,7 @@ static bool lift_start(struct Resolution *resolution) {
 static size_t find_pulling(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t found = switches->contact_count;
-  double most = 0.0;
+  double most = 0.0, vanishing = vanishing_force(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
     if (!contact_is_closed(resolution, i)) continue;
     double force = contact_force(resolution, i);
@@ -494,7 +504,8 @@ static size_t find_pulling(const struct Resolution *resolution) {
     bool is_reached = is_hit(resolution, contact_indicator(resolution->switches, i)) ||
                       (resolution->occasion == IN_EXCHANGE && force <= 0.0);
     bool was_closed = resolution->first_mode[i] == mode_of(resolution, switches->contacts[i].mode);
-    bool parts = is_reached && was_closed && resolution->was_opened[i] == 0.0 && !resolution->jumped;
+    bool parts =
+        ((is_reached && was_closed && !resolution->jumped) || force < vanishing) && resolution->was_opened[i] == 0.0;
     if (!(force < 0.0) && !parts) continue;
     if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
     most = fmin(force, 0.0);

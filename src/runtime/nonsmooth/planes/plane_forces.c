@@ -3,8 +3,8 @@
  * a = free + W F they fulfil the conditions of an impact in cone_impulses.c, for accelerations in place of rates. A
  * contact presses or opens, and a friction sticks or is at its limit against its acceleration. Faster frictions
  * slide along their velocities; their forces are proportional to those of the contacts, and are eliminated from W.
- * The solution sets the modes. This is tried at most once in an event resolution. It is needed if frictions that
- * switch one after another do not come to an end, or if no slip directions are found.
+ * The solution sets the modes. This is tried at most once in an event resolution. It is needed where frictions switch
+ * one after another endlessly, or where no slip directions or no forces of contacts are found.
  */
 #include "nonsmooth/planes/plane_forces.h"
 
@@ -173,6 +173,8 @@ static bool find_plane_forces(struct PlaneForces *forces) {
 
 bool plane_forces_resolve(struct Resolution *resolution) {
   struct PlaneForces forces = {.resolution = resolution};
+  if (resolution->has_found_forces) return false;
+  resolution->has_found_forces = true;
   if (!stop_slow(resolution)) return false;
   choose_impulses(resolution);
   if (!find_free(&forces)) return false;

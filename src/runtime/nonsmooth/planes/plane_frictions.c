@@ -34,15 +34,6 @@ static const char *reject_directions(const struct Resolution *resolution) {
   return "the slip directions of frictions in a plane cannot be found";
 }
 
-/*
- * Finds the modes of all frictions at rest from all their forces at once. False if there are none, or on a further call.
- */
-static bool resolve_together(struct Resolution *resolution) {
-  if (resolution->has_found_forces) return false;
-  resolution->has_found_forces = true;
-  return plane_forces_resolve(resolution);
-}
-
 /* True if a sliding friction needs other bounds on its speed, or another slip direction. */
 static bool is_sliding_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
   double rising = state->mode == PLANE_SLIPS ? state->aside : state->speed;
@@ -139,13 +130,13 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
   }
   if (*again || !resolves) return NULL;
   *again = true;
-  return plane_rests_find(resolution) || resolve_together(resolution) ? NULL : reject_directions(resolution);
+  return plane_rests_find(resolution) || plane_forces_resolve(resolution) ? NULL : reject_directions(resolution);
 }
 
 static const char *act(struct Resolution *resolution, bool *again) {
   const char *problem = frictions_act(resolution, again);
   bool goes_round = find_flipping(resolution, TOGETHER_LIMIT) < resolution->switches->friction_count;
-  if (problem == NULL && !*again && goes_round && resolve_together(resolution)) *again = true;
+  if (problem == NULL && !*again && goes_round && plane_forces_resolve(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
   size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
   if (problem == NULL && flipping < resolution->switches->friction_count)
@@ -192,6 +183,7 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .resolve_jam = jams_resolve,
                                                  .explain_jam = frictions_explain_jam,
                                                  .guess = guess,
+                                                 .resolve_together = plane_forces_resolve,
                                                  .set_plane = set_plane,
                                                  .find_impulses = cone_impulses_find,
                                                  .has_other_impulses = cone_impulses_have_others};
