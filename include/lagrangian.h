@@ -176,16 +176,21 @@ struct FrictionMetadata {
   bool has_static_limit; /* its force is the stiction while it is reported as 0, and its mode is not */
 };
 
-/*
- * Coulomb friction in the plane of two velocities. Two consecutive frictions, "along" and "across", share one mode.
- * It is 1 while the friction slides, 0 while it sticks, and -1 while it slips along a given slip direction, as at
- * the onset of slip. The mode may change if the speed falls to lower or rises to upper. It may also change if the
- * velocity leaves the slip direction backwards or sideways by as much.
- */
+/* Modes of a friction in a plane; the law while it has them, and what may end them. */
+enum PlaneMode {
+  PLANE_IS_FREE = -3, /* no force, as its contacts are open; only an event of these ends it */
+  PLANE_CARRIES = -2, /* a constant share of its kinetic force; others constrain its velocity, until it moves */
+  PLANE_IMPENDS = -1, /* the onset of slip: kinetic force against the slip direction, until the velocity leaves it */
+  PLANE_STICKS = 0,   /* the forces of its constraints and a constant share, until they reach the stiction */
+  PLANE_SLIDES = 1,   /* kinetic force against the velocity, until the speed falls to lower */
+  PLANE_CREEPS = 2    /* the same at a small speed, until this falls to lower or rises to upper */
+};
+
+/* Coulomb friction in the plane of two velocities. Two consecutive frictions, "along" and "across", share one mode. */
 struct PlaneMetadata {
   size_t along;             /* index of the friction along; the one across follows */
-  size_t slip_direction[2]; /* modes that hold the unit vector of the slip direction */
-  size_t lower, upper;      /* modes that hold speeds; upper < 0 is a bound on the velocity along the slip direction */
+  size_t slip_direction[2]; /* modes that hold the slip direction, or the share of the kinetic force against it */
+  size_t lower, upper;      /* modes that hold speeds; upper <= 0 is a bound on the velocity along the slip direction */
 };
 
 /* A velocity that is exactly 0 at rest in all that uses it. */

@@ -198,7 +198,7 @@ static double switching_mode(const struct Resolution *resolution, size_t i) {
   size_t friction = i - switches->contact_count;
   if (i < switches->contact_count) return mode_of(resolution, switches->contacts[i].mode);
   double mode = mode_of(resolution, switches->frictions[friction].mode);
-  return is_in_plane(switches, friction) ? mode * mode : mode;
+  return is_in_plane(switches, friction) && mode != 0.0 ? 1.0 : mode;
 }
 
 static size_t switching_count(const struct SwitchTable *switches) {

@@ -77,12 +77,12 @@ void set_friction(struct Resolution *resolution, size_t friction, double mode) {
 double sliding_share(const struct Resolution *resolution, size_t friction) {
   const struct SwitchTable *switches = resolution->switches;
   size_t plane = plane_of(switches, friction);
-  double mode = mode_of(resolution, switches->frictions[friction].mode);
-  if (plane == switches->plane_count) return mode;
+  if (plane == switches->plane_count) return mode_of(resolution, switches->frictions[friction].mode);
   const struct PlaneMetadata *metadata = &switches->planes[plane];
   double speed = speed_in_plane(resolution, metadata->along);
-  bool has_slip_direction = mode < 0.0 && (speed == 0.0 || mode_of(resolution, metadata->upper) > 0.0);
-  if (has_slip_direction) return mode_of(resolution, metadata->slip_direction[friction - metadata->along]);
+  enum PlaneMode mode = plane_mode(resolution, metadata);
+  if (mode == PLANE_IMPENDS || mode == PLANE_CARRIES || (mode == PLANE_IS_FREE && speed == 0.0))
+    return mode_of(resolution, metadata->slip_direction[friction - metadata->along]);
   return resolution->value[friction_slot(switches, friction, FRICTION_VELOCITY)] / speed;
 }
 

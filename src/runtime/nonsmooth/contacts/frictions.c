@@ -306,7 +306,8 @@ bool frictions_report(struct Resolution *resolution, bool *again) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionMetadata *metadata = &switches->frictions[i];
     bool is_planar = is_in_plane(switches, i);
-    double mode = is_planar ? fabs(mode_of(resolution, metadata->mode)) : mode_of(resolution, metadata->mode);
+    double mode = mode_of(resolution, metadata->mode);
+    if (is_planar && mode != 0.0) mode = 1.0;
     double velocity =
         is_planar ? speed_in_plane(resolution, i) : resolution->value[friction_slot(switches, i, FRICTION_VELOCITY)];
     bool is_constrained = false,

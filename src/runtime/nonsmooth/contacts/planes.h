@@ -14,6 +14,11 @@ static inline double resting_speed(const struct Resolution *resolution) {
   return share * largest_scale(resolution->state, lagrangian.coordinate_count);
 }
 
+/* Returns the mode of a friction in a plane. */
+static inline enum PlaneMode plane_mode(const struct Resolution *resolution, const struct PlaneMetadata *plane) {
+  return (enum PlaneMode)mode_of(resolution, resolution->switches->frictions[plane->along].mode);
+}
+
 /* Returns the speed of a friction in a plane. along: index of the first of its two frictions. */
 static inline double speed_in_plane(const struct Resolution *resolution, size_t along) {
   const double *value = resolution->value;

@@ -36,25 +36,16 @@ static const char *reject_directions(const struct Resolution *resolution) {
 
 /* True if a sliding friction needs other bounds on its speed, or another slip direction. */
 static bool is_sliding_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
-  double rising = state->mode == PLANE_SLIPS ? state->aside : state->speed;
-  if (resolution->occasion == AT_START && state->is_first) return true;
-  if (state->upper > 0.0 && (rising >= state->upper || (state->has_sped && state->is_first))) return true;
-  if (state->has_slowed && state->is_first) return true;
-  if (state->mode == PLANE_SLIPS) return state->ahead <= -state->lower;
-  return state->speed <= state->lower || (state->upper < 0.0 && state->ahead <= state->upper);
-}
-
-/* Lets a sticking friction slide if it has a velocity, as after an impact. True if its mode changes. */
-static bool leave_rest(struct Resolution *resolution, const struct PlaneState *state) {
-  if (!(state->speed > state->small)) return false;
-  plane_slide(resolution, state);
-  plane_count_switch(resolution, state);
-  return true;
+  if (state->is_first && (resolution->occasion == AT_START || state->has_slowed)) return true;
+  if (state->is_first && state->has_sped && state->mode != PLANE_SLIDES) return true;
+  if (plane_has_direction(state)) return state->ahead <= -state->lower || state->aside >= state->upper;
+  if (state->mode == PLANE_CREEPS && state->speed >= state->upper) return true;
+  return state->speed <= state->lower || (state->mode == PLANE_SLIDES && state->ahead < state->upper);
 }
 
 /* True if a friction that begins to slide does not accelerate along its direction. */
 static bool slips_otherwise(const struct Resolution *resolution, const struct PlaneState *state) {
-  if (state->mode != PLANE_SLIPS || state->speed > state->upper || plane_moves(state)) return false;
+  if (!plane_has_direction(state) || plane_moves(state)) return false;
   size_t slot = friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE);
   double c = mode_of(resolution, state->metadata->slip_direction[0]),
          s = mode_of(resolution, state->metadata->slip_direction[1]);
@@ -90,7 +81,7 @@ static bool follow_given(struct Resolution *resolution, const struct PlaneState 
 
 /* Handles a friction that loses its force, or has one again. True if its mode changes. */
 static bool change_force(struct Resolution *resolution, const struct PlaneState *state) {
-  if (state->is_free != state->has_force) return false;
+  if ((state->mode == PLANE_IS_FREE) != state->has_force) return false;
   if (!state->has_force) plane_free(resolution, state);
   else if (plane_moves(state)) plane_slide(resolution, state);
   else plane_stick(resolution, state);
@@ -98,9 +89,10 @@ static bool change_force(struct Resolution *resolution, const struct PlaneState 
   return true;
 }
 
-/* Updates the bounds and the direction of a sliding friction. True if they change. */
+/* Lets a friction slide with new bounds and another direction, or from rest if it has a velocity. True if it does. */
 static bool change_slide(struct Resolution *resolution, const struct PlaneState *state) {
-  if (!is_sliding_otherwise(resolution, state)) return false;
+  if (state->mode == PLANE_STICKS ? state->speed <= state->small : !is_sliding_otherwise(resolution, state))
+    return false;
   plane_slide(resolution, state);
   plane_count_switch(resolution, state);
   return true;
@@ -120,13 +112,12 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
   *again = false;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    if (state.is_free || !state.has_force) *again |= change_force(resolution, &state);
+    if (state.mode == PLANE_IS_FREE || !state.has_force) *again |= change_force(resolution, &state);
     else if (state.is_given) *again |= follow_given(resolution, &state);
-    else if (state.mode == PLANE_STICKS && state.speed > state.small) *again |= leave_rest(resolution, &state);
     else if (plane_is_stopping(resolution, &state) || plane_is_overcome(resolution, &state) ||
              slips_otherwise(resolution, &state))
       resolves = true;
-    else if (state.mode != PLANE_STICKS) *again |= change_slide(resolution, &state);
+    else *again |= change_slide(resolution, &state);
   }
   if (*again || !resolves) return NULL;
   *again = true;

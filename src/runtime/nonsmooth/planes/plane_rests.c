@@ -67,8 +67,8 @@ bool plane_is_stopping(const struct Resolution *resolution, const struct PlaneSt
   bool has_slowed = state->has_slowed && state->is_first;
   if (state->mode == PLANE_STICKS || !plane_is_slow(resolution, state)) return false;
   if (resolution->occasion == AT_START && state->is_first) return true;
-  if (state->mode == PLANE_SLIDES) return state->speed <= state->lower || has_slowed || state->has_reversed;
-  return state->mode == PLANE_SLIPS && (state->ahead <= -state->lower || has_slowed);
+  if (plane_slides(state)) return state->speed <= state->lower || has_slowed || state->has_reversed;
+  return plane_has_direction(state) && (state->ahead <= -state->lower || has_slowed);
 }
 
 static double largest_stiction(const struct Resolution *resolution) {
@@ -84,7 +84,7 @@ static bool is_reached(const struct Resolution *resolution, const struct PlaneSt
 }
 
 bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneState *state) {
-  if (state->mode != PLANE_STICKS) return false;
+  if (state->mode != PLANE_STICKS || state->speed > state->small) return false;
   if (is_reached(resolution, state)) return true;
   if (!(state->needed > state->stiction)) return false;
   /* Importers stop where it exceeds the stiction, however little. */
@@ -110,11 +110,10 @@ static void choose_at_rest(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     bool stops = may_stop && state.mode != PLANE_STICKS && plane_is_slow(resolution, &state),
-         begins = state.mode == PLANE_SLIPS && !plane_moves(&state);
-    bool rests = !state.is_given && !state.is_free && state.has_force &&
+         begins = plane_has_direction(&state) && !plane_moves(&state);
+    bool rests = !state.is_given && state.mode != PLANE_IS_FREE && state.has_force &&
                  (stops || begins || (state.mode == PLANE_STICKS && state.speed <= state.small));
-    bool slips = begins && !stops && !plane_has_part(resolution, &state);
-    bool is_overcome = slips || plane_is_overcome(resolution, &state);
+    bool is_overcome = (begins && !stops && state.mode == PLANE_IMPENDS) || plane_is_overcome(resolution, &state);
     *part_of_plane(resolution, &state) = !rests ? 0.0 : stops ? IS_SLOW : is_overcome ? IS_OVERCOME : IS_AT_REST;
   }
 }
@@ -136,7 +135,7 @@ static bool bring_to_rest(struct Resolution *resolution) {
   resolution_keep_modes(resolution);
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    if (*part_of_plane(resolution, &state) == 0.0 || state.mode == PLANE_SLIDES) continue;
+    if (*part_of_plane(resolution, &state) == 0.0 || plane_slides(&state)) continue;
     plane_stick(resolution, &state);
     moves |= state.speed > 0.0;
   }

@@ -16,11 +16,9 @@ static const double slower_share = 0.1;
 /* Slip directions whose length differs from 1 by less are unit vectors up to rounding. */
 static const double least_part = 1e-9;
 
-/*
- * Values of the mode upper. never: no velocity reaches it. has_deviated: the mode may change as the velocity turns
- * by 90 degrees from its first slip direction. So an importer that steps over rest does not miss it.
- */
-static const double never = -1e300, has_deviated = -1e-300;
+/* In m/s or rad/s: no velocity reaches this bound. */
+static const double unreached = 1e300;
+
 /*
  * A velocity that has turned back without an impact may have passed rest. It has if its component across the slip
  * direction is less than this fraction of the component against it.
@@ -32,11 +30,15 @@ static double tolerance_of(const struct Instance *instance) {
   return fmax(instance->fmu_state->tolerance, least);
 }
 
+static bool importer_integrates(const struct Resolution *resolution) {
+  return resolution->instance->kind == KIND_MODEL_EXCHANGE;
+}
+
 struct PlaneState plane_state(const struct Resolution *resolution, size_t plane) {
   const struct SwitchTable *switches = resolution->switches;
   const struct PlaneMetadata *metadata = &switches->planes[plane];
   struct PlaneState state = {.metadata = metadata,
-                             .mode = (int)mode_of(resolution, switches->frictions[metadata->along].mode),
+                             .mode = plane_mode(resolution, metadata),
                              .speed = speed_in_plane(resolution, metadata->along),
                              .lower = mode_of(resolution, metadata->lower),
                              .upper = mode_of(resolution, metadata->upper)};
@@ -55,13 +57,12 @@ struct PlaneState plane_state(const struct Resolution *resolution, size_t plane)
   state.aside = fabs(c * state.velocity[1] - s * state.velocity[0]);
   state.needed = hypot(state.force[0], state.force[1]);
   state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || state.sliding != 0.0;
-  state.is_free = state.mode == PLANE_SLIPS && state.upper < 0.0;
   double unit = tolerance_of(resolution->instance) * resolution->value[plane_slot(switches, plane)];
   state.small = small_share * unit;
   state.none = no_share * unit;
   state.has_slowed = is_hit(resolution, friction_indicator(switches, metadata->along));
   state.has_sped = is_hit(resolution, friction_indicator(switches, metadata->along + 1));
-  bool may_have_reversed = state.mode == PLANE_SLIDES && state.upper == has_deviated && !resolution->jumped;
+  bool may_have_reversed = state.mode == PLANE_SLIDES && importer_integrates(resolution) && !resolution->jumped;
   state.has_reversed = may_have_reversed && state.aside < -slope_back * state.ahead;
   state.is_given = switches->frictions[metadata->along].is_given;
   state.is_first = resolution->flips[friction_indicator(switches, metadata->along)] == 0.0;
@@ -83,6 +84,7 @@ void plane_count_switch(struct Resolution *resolution, const struct PlaneState *
   resolution->flips[friction_indicator(resolution->switches, state->metadata->along)]++;
 }
 
+/* Sets the mode, and the speeds or velocities at which it may change. */
 static void set_plane_mode(struct Resolution *resolution, const struct PlaneState *state, enum PlaneMode mode,
                            double lower, double upper) {
   resolution_set_mode(resolution, resolution->switches->frictions[state->metadata->along].mode, mode);
@@ -91,7 +93,7 @@ static void set_plane_mode(struct Resolution *resolution, const struct PlaneStat
 }
 
 void plane_hold(struct Resolution *resolution, const struct PlaneState *state) {
-  set_plane_mode(resolution, state, PLANE_STICKS, state->is_given ? 3.0 * state->none : state->none, never);
+  set_plane_mode(resolution, state, PLANE_STICKS, state->is_given ? 3.0 * state->none : state->none, -unreached);
 }
 
 void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]) {
@@ -108,13 +110,10 @@ void plane_stick(struct Resolution *resolution, const struct PlaneState *state) 
 }
 
 void plane_release(struct Resolution *resolution, const struct PlaneState *state) {
-  set_plane_mode(resolution, state, PLANE_SLIPS, 3.0 * state->none, 3.0 * state->none);
-}
-
-bool plane_has_part(const struct Resolution *resolution, const struct PlaneState *state) {
   double share = hypot(mode_of(resolution, state->metadata->slip_direction[0]),
                        mode_of(resolution, state->metadata->slip_direction[1]));
-  return share < 1.0 - least_part;
+  enum PlaneMode mode = share < 1.0 - least_part ? PLANE_CARRIES : PLANE_IMPENDS;
+  set_plane_mode(resolution, state, mode, 3.0 * state->none, 3.0 * state->none);
 }
 
 /* Sets the slip direction. A direction of 0 keeps the present one, or selects the first axis if there is none. */
@@ -130,16 +129,16 @@ static void set_slip_direction(struct Resolution *resolution, const struct Plane
 }
 
 void plane_slide(struct Resolution *resolution, const struct PlaneState *state) {
-  bool is_exchanged = resolution->instance->kind == KIND_MODEL_EXCHANGE;
   double slower = fmax(slower_share * state->speed, state->none);
   set_slip_direction(resolution, state, state->velocity);
-  if (state->speed > 2.0 * state->small)
-    set_plane_mode(resolution, state, PLANE_SLIDES, state->small, is_exchanged ? has_deviated : never);
-  else set_plane_mode(resolution, state, PLANE_SLIDES, slower, 4.0 * state->small);
+  /* The velocity turns by 90 degrees from the slip direction as an importer steps over rest: it must not miss that. */
+  double backwards = importer_integrates(resolution) ? 0.0 : -unreached;
+  if (state->speed > 2.0 * state->small) set_plane_mode(resolution, state, PLANE_SLIDES, state->small, backwards);
+  else set_plane_mode(resolution, state, PLANE_CREEPS, slower, 4.0 * state->small);
 }
 
 void plane_free(struct Resolution *resolution, const struct PlaneState *state) {
-  set_plane_mode(resolution, state, PLANE_SLIPS, -never, never);
+  set_plane_mode(resolution, state, PLANE_IS_FREE, unreached, -unreached);
 }
 
 void plane_slip(struct Resolution *resolution, const struct PlaneState *state, const double slip_direction[2]) {

@@ -4,25 +4,18 @@
 #include "nonsmooth/contacts/planes.h"
 
 /*
- * Modes of a friction in a plane. PLANE_SLIPS: its force is along a fixed direction, as at the onset of slip, or it
- * slides freely, without force. PLANE_SLIDES: its force is against the velocity.
- */
-enum PlaneMode { PLANE_SLIPS = -1, PLANE_STICKS = 0, PLANE_SLIDES = 1 };
-
-/*
  * A friction in a plane with its values at the present modes. It is computed from struct Resolution, and changes
  * nothing there.
  */
 struct PlaneState {
   const struct PlaneMetadata *metadata;
-  int mode;
+  enum PlaneMode mode;
   double speed, stiction, sliding;  /* speed; largest static and kinetic friction force */
   bool has_force;                   /* false: its contacts have no force, nothing sticks */
-  bool is_free;                     /* it slides without force: PLANE_SLIPS with upper < 0 */
   double velocity[2], ahead, aside; /* along and across; components along the slip direction, and aside */
   double rate[2];                   /* rates of the velocities along and across */
   double force[2], needed;          /* force that it carries if it sticks, and its size */
-  double lower, upper;              /* speeds at which the mode may change; upper < 0: never, or a bound on ahead */
+  double lower, upper;              /* speeds at which the mode may change */
   /*
    * Speeds that count as small, and as 0, within the errors of the method. At a small speed the friction is brought
    * to rest at once if it can stick. The error is of the second order in the speed.
@@ -37,6 +30,16 @@ struct PlaneState {
 
 /* Returns the state of a friction in a plane from the last evaluation. */
 struct PlaneState plane_state(const struct Resolution *resolution, size_t plane);
+
+/* True if the friction slides, with its force against the velocity. */
+static inline bool plane_slides(const struct PlaneState *state) {
+  return state->mode == PLANE_SLIDES || state->mode == PLANE_CREEPS;
+}
+
+/* True if it has a force along a fixed direction, without constraints. */
+static inline bool plane_has_direction(const struct PlaneState *state) {
+  return state->mode == PLANE_IMPENDS || state->mode == PLANE_CARRIES;
+}
 
 /* True if the friction slides faster than counts as 0. */
 static inline bool plane_moves(const struct PlaneState *state) {
@@ -68,9 +71,6 @@ void plane_carry(struct Resolution *resolution, const struct PlaneState *state, 
  */
 void plane_release(struct Resolution *resolution, const struct PlaneState *state);
 void plane_hold(struct Resolution *resolution, const struct PlaneState *state);
-
-/* True if the given force is below the kinetic friction force, and so not that of sliding. */
-bool plane_has_part(const struct Resolution *resolution, const struct PlaneState *state);
 
 /* Lets the friction slide until it is slow; a slow one until it is much slower or faster than at present. */
 void plane_slide(struct Resolution *resolution, const struct PlaneState *state);
