@@ -351,6 +351,11 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
   return start >= -error - error_bound && (error == 0.0 || start <= error + error_bound) ? fmin(start, -error) : 0.0;
 }
 
+/* True if the indicator is 0 within rounding while constraints are active. */
+static bool may_stay_at_zero(const struct Search *search, size_t indicator) {
+  return fabs(search->exact[indicator]) <= search->error_bound[indicator] && solver_has_constraints(search->instance);
+}
+
 /*
  * True for a velocity that is 0 within rounding while constraints are active: they may keep it at 0. In a long step,
  * rounding of the accelerations would show in it. A gap is left at once.
@@ -358,8 +363,7 @@ static double floor_of(const struct Search *search, size_t indicator, double sta
 static bool may_be_constrained(const struct Search *search, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool is_gap = indicator >= contact_indicator(switches, 0) && indicator < friction_indicator(switches, 0);
-  return !is_gap && fabs(search->exact[indicator]) <= search->error_bound[indicator] &&
-         solver_has_constraints(search->instance);
+  return !is_gap && may_stay_at_zero(search, indicator);
 }
 
 /* Returns the values at projected states, which are computed for all indicators at once. */
@@ -385,9 +389,7 @@ static void project_samples(struct Search *search, size_t indicator, double from
 static bool keeps_touching(struct Search *search, size_t indicator, double from, double to) {
   double error_bound = search->error_bound[indicator];
   size_t count = indicator_count(lagrangian.switches);
-  if (!is_of_gap(search, indicator) || !(fabs(search->exact[indicator]) <= error_bound) ||
-      !solver_has_constraints(search->instance))
-    return false;
+  if (!is_of_gap(search, indicator) || !may_stay_at_zero(search, indicator)) return false;
   const double *projected = projected_samples(search, from, to);
   bool keeps = true;
   for (size_t i = indicator; i < CHEBYSHEV_NODES * count; i += count) keeps &= fabs(projected[i]) <= error_bound;

@@ -303,7 +303,7 @@ static const char *locking_friction(const struct Resolution *resolution, const s
   return resolution->switches->frictions[impulses->member[contacts + most]].name;
 }
 
-/* What a message about missing forces names. */
+/* The names and the number in a message about missing forces. */
 struct Paradox {
   const char *contact, *friction, *how_many; /* how_many solutions there are */
 };
@@ -411,14 +411,14 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
 }
 
 /*
- * Returns what is left in gap j of the accelerations by forces of two contacts that cancel in gap i. A matrix that is
- * scaled such that W_ii = 1 makes it 0 where both jam, and of order 1 elsewhere.
+ * Returns the acceleration of gap j by forces of two contacts whose sum is 1, and whose accelerations cancel in gap i.
+ * INFINITY if no forces that press do so. With W_ii = 1 it is 0 where both jam, and of order 1 elsewhere.
  */
 static double left_by_pair(double ii, double ij, double ji, double jj) {
   return ij < 0.0 ? (ii * jj - ij * ji) / (ii - ij) : INFINITY;
 }
 
-/* True if two contacts jam each other by their frictions: each presses the other together. Not by their gaps alone. */
+/* True if frictions make two contacts jam each other. False if these oppose each other without friction too. */
 static bool jam_together(const struct RestingContacts *resting, size_t i, size_t j) {
   size_t n = resting->forces.count;
   const double *s = resting->forces.s;

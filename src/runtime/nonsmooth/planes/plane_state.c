@@ -25,13 +25,13 @@ static const double unreached = 1e300;
  */
 static const double slope_back = 0.5;
 
-static double tolerance_of(const struct Instance *instance) {
-  double least = instance->kind == KIND_MODEL_EXCHANGE ? least_tolerance_in_exchange : least_tolerance;
-  return fmax(instance->fmu_state->tolerance, least);
+static bool importer_integrates(const struct Instance *instance) {
+  return instance->kind == KIND_MODEL_EXCHANGE;
 }
 
-static bool importer_integrates(const struct Resolution *resolution) {
-  return resolution->instance->kind == KIND_MODEL_EXCHANGE;
+static double tolerance_of(const struct Instance *instance) {
+  double least = importer_integrates(instance) ? least_tolerance_in_exchange : least_tolerance;
+  return fmax(instance->fmu_state->tolerance, least);
 }
 
 struct PlaneState plane_state(const struct Resolution *resolution, size_t plane) {
@@ -62,7 +62,8 @@ struct PlaneState plane_state(const struct Resolution *resolution, size_t plane)
   state.none = no_share * unit;
   state.has_slowed = is_hit(resolution, friction_indicator(switches, metadata->along));
   state.has_sped = is_hit(resolution, friction_indicator(switches, metadata->along + 1));
-  bool may_have_reversed = state.mode == PLANE_SLIDES && importer_integrates(resolution) && !resolution->jumped;
+  bool may_have_reversed =
+      state.mode == PLANE_SLIDES && importer_integrates(resolution->instance) && !resolution->jumped;
   state.has_reversed = may_have_reversed && state.aside < -slope_back * state.ahead;
   state.is_given = switches->frictions[metadata->along].is_given;
   state.is_first = resolution->flips[friction_indicator(switches, metadata->along)] == 0.0;
@@ -132,7 +133,7 @@ void plane_slide(struct Resolution *resolution, const struct PlaneState *state) 
   double slower = fmax(slower_share * state->speed, state->none);
   set_slip_direction(resolution, state, state->velocity);
   /* The velocity turns by 90 degrees from the slip direction as an importer steps over rest: it must not miss that. */
-  double backwards = importer_integrates(resolution) ? 0.0 : -unreached;
+  double backwards = importer_integrates(resolution->instance) ? 0.0 : -unreached;
   if (state->speed > 2.0 * state->small) set_plane_mode(resolution, state, PLANE_SLIDES, state->small, backwards);
   else set_plane_mode(resolution, state, PLANE_CREEPS, slower, 4.0 * state->small);
 }
