@@ -196,6 +196,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     case SERIES_SOLVE: EACH(1, solve(frame, index[0]));
     case SERIES_STATE: EACH(2, (&R)[1] = A * reciprocal[k + 1]);
     case SERIES_SLOPE: EACH(2, R = (k + 1) * (&A)[1]);
+    case SKIP: code += ANYWHERE(row_a[code[0]] > 0.0) ? 1 : 1 + count; break;
     default: return; /* lagc writes no other opcode */
     }
   }

@@ -27,6 +27,7 @@ struct IrFunction {
   size_t local_count;
   size_t operation_count; /* arithmetic operations, see costs.h */
   uint32_t spaces;        /* bit s: some operand or result is in space s */
+  Slot *row_conditions;   /* of functions of a series, of each row: see regions.h; else NULL */
 };
 
 /* Returns the slot with this index in a space. */

@@ -1,8 +1,10 @@
 /*
- * A backward pass finds for each local variable the condition of the guards that use it, directly or through variables
- * with the same condition. Others are always needed, as are instructions that read arrays which change. A forward pass
- * delays the instructions of a region until a guard reads one of them. Variables are written once, so that a delay
- * changes nothing. Both passes are linear in the instructions, times the regions that are open.
+ * Variables are local ones, and the rows of a series. A backward pass finds the condition of the guards that use a
+ * variable, directly or through others with the same condition. Others are always needed, as are instructions that read
+ * arrays which change. In series, an instruction may read what a later one computed at the order before, and the pass is
+ * repeated until nothing changes. A forward pass delays the instructions of a region until a guard reads one of
+ * them. Variables are written once, so that a delay changes nothing. A pass is linear in the instructions, times the
+ * regions that are open.
  */
 #include "program/codegen/regions.h"
 
@@ -14,39 +16,100 @@ static const Slot unused = UINT32_MAX, always = UINT32_MAX - 1;
 /* A region with fewer instructions takes longer to skip than to compute. */
 enum { FEW_INSTRUCTIONS = 8 };
 
-/* True for spaces whose values stay the same while a function runs. */
-static bool is_kept(enum Space space) {
-  return space <= SPACE_LOCAL && space != SPACE_ACCELERATION;
+/* The conditions of a function's variables. */
+struct Conditions {
+  Slot *local, *row;
+};
+
+/* Returns where the condition of a variable is; NULL for slots that are none. */
+static Slot *condition_of(const struct Conditions *conditions, Slot slot) {
+  if (space_of(slot) == SPACE_LOCAL) return &conditions->local[index_in(slot)];
+  return space_of(slot) == SPACE_ROW && conditions->row != NULL ? &conditions->row[index_in(slot)] : NULL;
 }
 
-/* True if the instruction computes a local variable from values that stay the same. */
-static bool is_movable(const struct Instruction *instruction) {
-  const struct OpcodeMetadata *metadata = opcode_metadata(instruction->opcode);
-  bool is_kept_everywhere = metadata->result == VALUE && space_of(instruction->result) == SPACE_LOCAL;
-  for (int i = 0; i < opcode_arity(instruction->opcode); i++)
-    is_kept_everywhere &= metadata->operands[i] == VALUE && is_kept(space_of(instruction->operands[i]));
-  return is_kept_everywhere;
+/* True for spaces whose values, or whose coefficients up to the present order, stay the same while a function runs. */
+static bool is_kept(enum Space space) {
+  return (space <= SPACE_LOCAL && space != SPACE_ACCELERATION) || (space >= SPACE_ROW && space <= SPACE_TIME_ROW);
+}
+
+/* True if the instruction computes a variable from values that stay the same. */
+static bool is_movable(const struct Conditions *conditions, const struct Instruction *instruction) {
+  bool is_movable = opcode_has_result(instruction->opcode) && condition_of(conditions, instruction->result) != NULL;
+  for (int i = 0; i < opcode_arity(instruction->opcode); i++) is_movable &= is_kept(space_of(instruction->operands[i]));
+  return is_movable;
+}
+
+/* Joins the condition of a further use to that of a variable. */
+static void join(Slot *known, Slot condition) {
+  if (condition == unused) return;
+  *known = *known == unused || *known == condition ? condition : always;
+}
+
+static bool is_guard(const struct Instruction *instruction) {
+  return instruction->opcode == GUARD_OF || instruction->opcode == SERIES_GUARD;
+}
+
+/* Returns the condition under which an instruction is needed. */
+static Slot condition_of_instruction(const struct Conditions *conditions, const struct Instruction *instruction) {
+  return is_movable(conditions, instruction) ? *condition_of(conditions, instruction->result) : always;
+}
+
+/* Hands the conditions of results on to operands, from the last instruction to the first. True if any changed. */
+static bool hand_on(const struct IrFunction *ir, const struct Conditions *conditions) {
+  bool changed = false;
+  for (size_t i = ir->count; i-- > 0;) {
+    const struct Instruction *instruction = &ir->instructions[i];
+    Slot own = condition_of_instruction(conditions, instruction);
+    for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
+      Slot *known = condition_of(conditions, instruction->operands[j]);
+      if (known == NULL) continue;
+      Slot before = *known;
+      join(known, is_guard(instruction) && j == 1 && own == always ? instruction->operands[0] : own);
+      changed |= *known != before;
+    }
+  }
+  return changed;
+}
+
+/* Finds the conditions of all variables; those without a use are always needed, as a row that only a limit reads. */
+static void find_conditions(const struct IrFunction *ir, const struct Conditions *conditions, size_t row_count) {
+  while (hand_on(ir, conditions)) continue;
+  for (size_t i = 0; i < ir->local_count; i++)
+    if (conditions->local[i] == unused) conditions->local[i] = always;
+  for (size_t i = 0; i < row_count; i++)
+    if (conditions->row[i] == unused) conditions->row[i] = always;
+  while (hand_on(ir, conditions)) continue;
+}
+
+static Slot *unused_variables(size_t count) {
+  Slot *conditions = allocate(count, sizeof *conditions);
+  for (size_t i = 0; i < count; i++) conditions[i] = unused;
+  return conditions;
+}
+
+Slot *regions_rows_create(size_t count) {
+  return unused_variables(count);
+}
+
+void regions_need_row(Slot *row_conditions, size_t row, const Slot *condition) {
+  join(&row_conditions[row], condition != NULL ? *condition : always);
+}
+
+void regions_find_rows(const struct IrFunction *order, Slot *row_conditions, size_t row_count) {
+  struct Conditions conditions = {unused_variables(order->local_count), row_conditions};
+  find_conditions(order, &conditions, row_count);
+  release(conditions.local);
 }
 
 /* Returns the condition of each instruction. */
 static Slot *conditions_of(const struct IrFunction *ir) {
-  Slot *needed = allocate(ir->local_count, sizeof *needed), *conditions = allocate(ir->count, sizeof *conditions);
-  for (size_t i = 0; i < ir->local_count; i++) needed[i] = unused;
-  for (size_t i = ir->count; i-- > 0;) {
-    const struct Instruction *instruction = &ir->instructions[i];
-    Slot own = is_movable(instruction) ? needed[index_in(instruction->result)] : always;
-    if (own == unused) own = always;
-    for (int j = 0; j < opcode_arity(instruction->opcode); j++) {
-      if (space_of(instruction->operands[j]) != SPACE_LOCAL) continue;
-      bool is_guarded = instruction->opcode == GUARD_OF && j == 1 && own == always;
-      Slot condition = is_guarded ? instruction->operands[0] : own,
-           *known = &needed[index_in(instruction->operands[j])];
-      *known = *known == unused || *known == condition ? condition : always;
-    }
-    conditions[i] = own;
-  }
-  release(needed);
-  return conditions;
+  struct Conditions conditions = {unused_variables(ir->local_count), ir->row_conditions};
+  Slot *of_instruction = allocate(ir->count, sizeof *of_instruction);
+  find_conditions(ir, &conditions, 0);
+  for (size_t i = 0; i < ir->count; i++)
+    of_instruction[i] = condition_of_instruction(&conditions, &ir->instructions[i]);
+  release(conditions.local);
+  return of_instruction;
 }
 
 size_t regions_length(const struct IrFunction *ir) {
@@ -94,8 +157,7 @@ static struct SeparatedFunction separate_part(const struct IrFunction *ir, const
       append(&open_region(&open, &open_count, conditions[i])->ir, *instruction);
       continue;
     }
-    if (instruction->opcode == GUARD_OF)
-      close_region(&separated, open_region(&open, &open_count, instruction->operands[0]));
+    if (is_guard(instruction)) close_region(&separated, open_region(&open, &open_count, instruction->operands[0]));
     append(&separated.outer, *instruction);
   }
   for (size_t i = 0; i < open_count; i++) close_region(&separated, &open[i]); /* later parts have the guards */

@@ -19,7 +19,16 @@ struct SeparatedFunction {
   size_t region_count;
 };
 
-/* Separates the regions of the consecutive parts of a function that is not a series; ends: of each part. */
+/*
+ * Find the conditions of the rows of a series, which its functions need in IrFunction.row_conditions. At first no row
+ * has a use. Uses by others than the instructions of an order follow (condition: NULL if a row is always needed), and
+ * at last those by these instructions.
+ */
+Slot *regions_rows_create(size_t count);
+void regions_need_row(Slot *row_conditions, size_t row, const Slot *condition);
+void regions_find_rows(const struct IrFunction *order, Slot *row_conditions, size_t row_count);
+
+/* Separates the regions of the consecutive parts of a function; ends: of each part. */
 void regions_separate(const struct IrFunction *ir, const size_t *ends, size_t count, struct SeparatedFunction *parts);
 
 /* Returns the number of instructions in regions. */

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "program/codegen/regions.h"
 #include "program/series/series_builder.h"
 
 /* Finds the nodes that change in time and must be computed. */
@@ -247,6 +248,21 @@ static struct Rows rows_create(const struct SeriesBuilder *builder, size_t accel
   return rows;
 }
 
+/* Returns the conditions under which rows are needed; the runtime reads the rows of accelerations. */
+static Slot *row_conditions_of(const struct SeriesProgram *program) {
+  Slot *conditions = regions_rows_create(program->row_count);
+  for (size_t i = 0; i < program->acceleration_count; i++)
+    regions_need_row(conditions, program->acceleration_row + i, NULL);
+  for (size_t i = 0; i < program->limit.count; i++) {
+    const struct LimitCheck *check = &program->limit.items[i];
+    const Slot rows[] = {check->row, check->other_row}, *condition = check->is_guarded ? &check->guard_condition : NULL;
+    for (int j = 0; j < (limit_metadata(check->rule)->has_two_rows ? 2 : 1); j++)
+      if (space_of(rows[j]) == SPACE_ROW) regions_need_row(conditions, index_in(rows[j]), condition);
+  }
+  regions_find_rows(program->order, conditions, program->row_count);
+  return conditions;
+}
+
 /* Sets the program's instructions of an order, counts its recurrences, and resolves the slots of the step limits. */
 static void complete(struct SeriesProgram *program, struct Rows *rows) {
   program->order = resolve(rows);
@@ -256,6 +272,14 @@ static void complete(struct SeriesProgram *program, struct Rows *rows) {
     program->limit.items[i].row = resolved(rows, program->limit.items[i].row);
     program->limit.items[i].other_row = resolved(rows, program->limit.items[i].other_row);
   }
+  program->order->row_conditions = row_conditions_of(program);
+}
+
+/* Begins the function that computes the coefficients 0 of the rows. */
+static struct IrFunction *begin_start(const struct SeriesProgram *program, struct CodeGenerator *generator) {
+  struct IrFunction *start = generator_begin(generator);
+  start->row_conditions = program->order->row_conditions;
+  return start;
 }
 
 /* Computes the nodes that have rows and do not depend on accelerations. */
@@ -307,7 +331,7 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   struct Rows rows = rows_create(builder, blocks->count > 0 ? row_count(equations) : 0, blocks->mass_count, program);
   complete(program, &rows);
 
-  program->start = generator_begin(generator);
+  program->start = begin_start(program, generator);
   compute_before_blocks(builder, generator);
   append_accelerations(generator, equations, blocks, false);
   define_unknowns(generator, equations, blocks, expressions->unknowns);
@@ -347,7 +371,7 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
   struct Rows rows = rows_create(builder, with_accelerations ? n : 0, 0, program);
   complete(program, &rows);
 
-  program->start = generator_begin(generator);
+  program->start = begin_start(program, generator);
   for (size_t i = 0; with_accelerations && i < n; i++) {
     Slot acceleration = slot_at(SPACE_ACCELERATION, i);
     ir_append(program->start, FIRST_SLOPE, acceleration, slot_at(SPACE_STATE_ROW, n + i), 0, 0);
@@ -372,7 +396,7 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   struct Rows rows = rows_create(builder, forces, 0, program);
   complete(program, &rows);
 
-  program->start = generator_begin(generator);
+  program->start = begin_start(program, generator);
   compute_first(builder, generator, NULL, 0);
   copy_first(&rows, generator);
   for (size_t i = 0; i < forces; i++)
