@@ -6,8 +6,9 @@
 /* A communication step in progress. */
 struct CommunicationStep {
   double start, end;
-  double length; /* in s, > 0; equals end - start to rounding */
-  long count;    /* solver steps made in it */
+  double length;     /* in s, > 0; equals end - start to rounding */
+  double step_limit; /* longest step of the solver in s, to separate events; 0 for none */
+  long count;        /* solver steps made in it */
 };
 
 /*

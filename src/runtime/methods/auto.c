@@ -193,8 +193,8 @@ static bool auto_interpolate_at(struct Instance *instance, const double *times, 
 }
 
 /*
- * Returns the operations of Radau IIA, counted as work_of_series() does, for these numbers of evaluations and of
- * Jacobians, each with its factorizations.
+ * Returns the operations of a step of Radau IIA, counted as work_of_series() does, with its factorizations and these
+ * numbers of evaluations and of Jacobians.
  */
 static double work_of_radau(int stages, double evaluations, double jacobians) {
   const struct OperationCounts *count = &lagrangian.steps.operations;
@@ -202,7 +202,7 @@ static double work_of_radau(int stages, double evaluations, double jacobians) {
   double systems = 2.0 + 4.0 * (s - 1.0); /* one real system; a complex one counts four times */
   double evaluation = 250.0 + count->derivatives + s * (20.0 + 5.0 * states) + systems / s * count->solve;
   double factors = 20.0 * s + systems * count->factor;
-  return evaluations * evaluation + jacobians * (600.0 + count->jacobian + factors + 3.0 * s * s * states);
+  return evaluations * evaluation + jacobians * (600.0 + count->jacobian) + factors + 3.0 * s * s * states;
 }
 
 /* Starts the other method at the end of the last step. False if the state is unknown or memory is missing. */

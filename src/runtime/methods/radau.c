@@ -7,17 +7,18 @@
  * of a_ij f(t + c_j h, x(t) + z_j). The methods are L-stable; c_s = 1, and the last stage is the result. The polynomial
  * also is the dense output.
  *
- * Simplified Newton iterations solve for the stages, with the Jacobian of the step's start. In the eigenvectors of
- * A^-1, z = V w, they need one real and (s - 1) / 2 complex linear systems of the system's size (radau.h). They begin
- * with the polynomial of the last step, and end by the estimated contraction (solve_stages()).
+ * Simplified Newton iterations solve for the stages, with the Jacobian at the start of this or an earlier step. In the
+ * eigenvectors of A^-1, z = V w, they need one real and (s - 1) / 2 complex linear systems of the system's size
+ * (radau.h). They begin with the polynomial of the last step, and end by the estimated contraction (solve_stages()).
  *
  * The error estimate is that of an embedded formula of order s with the additional node 0. The filter (mu - J)^-1
  * keeps it bounded for stiff parts. The step follows from it by Gustafsson's predictive controller. The order
  * follows from the contraction, as in the paper of 1999 (choose_method()). A failed attempt shortens the step to
  * 0.9 of it or less; the loop ends after ATTEMPT_LIMIT attempts or at the resolution of time.
  *
- * A step costs one Jacobian, (s + 1) / 2 factorizations per attempt and s evaluations per iteration. The snapshot holds
- * all that determines a step: its start, the stages, and the numbers of the controllers.
+ * A step costs (s + 1) / 2 factorizations per attempt and s evaluations per iteration. The Jacobian of an earlier step
+ * is kept while the iterations contract well with it (choose_jacobian()). The snapshot holds all that determines a
+ * step: its start, the stages, the Jacobian, and the numbers of the controllers.
  */
 #include <float.h>
 #include <math.h>
@@ -35,6 +36,8 @@ static const double radau_safety = 0.05;
 /* Shortest first step relative to the time: in a shorter one, rounding would outweigh the change. */
 static const double shortest_first_step = 1e-12;
 
+static const char no_solution[] = "the equations have no solution";
+
 /* Newton iterations per step, attempts per step, and steps without failure before the order may rise. */
 enum {
   ITERATION_LIMIT = 12,
@@ -43,7 +46,7 @@ enum {
   METHOD_COUNT = sizeof methods / sizeof *methods
 };
 
-/* The part of the snapshot; followed by the state at the start of the last step, and its stages. */
+/* The part of the snapshot; followed by the state at the start of the last step, its stages, and a Jacobian. */
 struct RadauSaved {
   double step;        /* last step in s; 0 if there is none, and no polynomial */
   double next;        /* proposed by the controller, in s; 0 for none */
@@ -51,10 +54,11 @@ struct RadauSaved {
   double contraction; /* rate of the Newton iterations in the last step */
   int64_t method;     /* index of the last step's method */
   int64_t next_method;
-  int64_t steps; /* since the last failure of the iterations, at most STEPS_OF_CAUTION */
+  int64_t steps;          /* since the last failure of the iterations, at most STEPS_OF_CAUTION */
+  int64_t keeps_jacobian; /* 1 if the next step begins with the Jacobian of the snapshot */
 };
 
-/* Memory of the method. saved, start and stages are parts of the snapshot. */
+/* Memory of the method. saved, start, stages and the systems' Jacobian are parts of the snapshot. */
 struct Radau {
   struct RadauSaved *saved;
   double *start, *stages; /* in the snapshot: states, STAGE_LIMIT x states */
@@ -66,8 +70,13 @@ struct Radau {
   Series *series;                /* workspace of first_terms.h */
 };
 
+/* Returns how many numbers follow struct RadauSaved in the snapshot. */
+static size_t saved_numbers(void) {
+  return (1 + STAGE_LIMIT) * lagrangian.state_count + lagrangian.implicit.pattern.count;
+}
+
 static size_t radau_saved_size(void) {
-  return sizeof(struct RadauSaved) + (1 + STAGE_LIMIT) * lagrangian.state_count * sizeof(double);
+  return sizeof(struct RadauSaved) + saved_numbers() * sizeof(double);
 }
 
 static bool radau_is_saved_valid(const struct FmuState *fmu_state, const void *saved) {
@@ -77,7 +86,8 @@ static bool radau_is_saved_valid(const struct FmuState *fmu_state, const void *s
          first.next_method < METHOD_COUNT && first.steps >= 0 && first.steps <= STEPS_OF_CAUTION && first.step >= 0.0 &&
          first.next >= 0.0 && first.error >= 0.0 && first.contraction >= 0.0 &&
          fmu_state->last_step.end == fmu_state->last_step.start + first.step && snapshot_is_finite(saved, 4) &&
-         snapshot_is_finite((const char *)saved + sizeof first, (1 + STAGE_LIMIT) * lagrangian.state_count);
+         first.keeps_jacobian >= 0 && first.keeps_jacobian <= 1 &&
+         snapshot_is_finite((const char *)saved + sizeof first, saved_numbers());
 }
 
 static bool radau_create(struct Instance *instance) {
@@ -98,7 +108,7 @@ static bool radau_create(struct Instance *instance) {
   radau->rates = radau->z + STAGE_LIMIT * states;
   double *rest = radau->rates + STAGE_LIMIT * states;
   radau->series = (Series *)rest;
-  radau_systems_slot(&radau->systems, rest + rows);
+  radau_systems_slot(&radau->systems, radau->stages + STAGE_LIMIT * states, rest + rows);
   instance->solver_memory = radau;
   return true;
 }
@@ -352,8 +362,8 @@ static double first_step(const struct Instance *instance, const struct Radau *ra
 }
 
 /*
- * Begins a step at the end of the last one: projects the state there, and evaluates its scale, f and the Jacobian.
- * Returns NULL, or the reason for a failure.
+ * Begins a step at the end of the last one: projects the state there, and evaluates its scale and f. Returns NULL, or
+ * the reason for a failure.
  */
 static const char *begin(struct Instance *instance, struct Radau *radau, double time) {
   double relative = radau_tolerance(instance);
@@ -362,22 +372,22 @@ static const char *begin(struct Instance *instance, struct Radau *radau, double 
   if (problem != NULL) return problem;
   for (size_t k = 0; k < lagrangian.state_count; k++)
     radau->scale[k] = relative * (fabs(radau->state[k]) + lagrangian.steps.nominal[k]);
-  bool is_solvable = solver_derivatives(instance, time, radau->state, radau->first) &&
-                     radau_systems_evaluate(instance, &radau->systems, time, radau->state);
-  return is_solvable ? NULL : "the equations have no solution";
+  return solver_derivatives(instance, time, radau->state, radau->first) ? NULL : no_solution;
 }
 
 /*
  * Returns the step to try in s. The first one is at most a communication step, and long enough to change the time.
- * Every step is bounded by the functions in the equations (first_terms.h).
+ * Every step is bounded by the limit that separates events, and by the functions in the equations (first_terms.h).
  */
-static double trial_step(struct Instance *instance, struct Radau *radau, double time, double length) {
+static double trial_step(struct Instance *instance, struct Radau *radau, double time,
+                         const struct CommunicationStep *communication) {
   const struct RadauSaved *saved = radau->saved;
   double step = saved->next;
   if (saved->step == 0.0) {
-    step = fmin(step > 0.0 ? step : first_step(instance, radau, length), length);
+    step = fmin(step > 0.0 ? step : first_step(instance, radau, communication->length), communication->length);
     step = fmax(step, shortest_first_step * fabs(time));
   }
+  if (communication->step_limit > 0.0) step = fmin(step, communication->step_limit);
   double longest = fmin(lagrangian.steps.max_step, 2.0 * step);
   return fmin(step, first_terms_step(instance, radau->series, time, radau->state, longest));
 }
@@ -406,22 +416,48 @@ static void choose_method(const struct Instance *instance, struct RadauSaved *sa
   else if (!is_highest && saved->contraction < 0.002 && saved->steps == STEPS_OF_CAUTION) saved->next_method++;
 }
 
+/*
+ * Returns how many evaluations cost as much as a Jacobian: one for each column by directional derivatives, or one for
+ * each element of a row.
+ */
+static double evaluations_of_jacobian(void) {
+  double states = (double)lagrangian.state_count;
+  return lagrangian.implicit.jacobian != NULL ? (double)lagrangian.implicit.pattern.count / states : states;
+}
+
+/*
+ * Decides whether the next step keeps the Jacobian. To reduce an error by `accuracy`, iterations with the contraction
+ * theta take log(accuracy) / log(theta) times s evaluations. A new Jacobian is worth its cost if the iterations take
+ * more than one, and a share of that cost.
+ */
+static void choose_jacobian(struct RadauSaved *saved, const struct RadauMethod *method) {
+  const double accuracy = 1e-3, share = 0.25;
+  double iterations = 1.0 + share * evaluations_of_jacobian() / method->stages;
+  saved->keeps_jacobian = saved->contraction <= pow(accuracy, 1.0 / iterations);
+}
+
+/* Evaluates the Jacobian at the start of the step in progress. False if it does not exist. */
+static bool renew_jacobian(struct Instance *instance, struct Radau *radau, double time) {
+  radau->saved->keeps_jacobian = 0;
+  return radau_systems_evaluate(instance, &radau->systems, time, radau->state);
+}
+
 static const char *radau_advance(struct Instance *instance, const struct CommunicationStep *communication) {
   struct Radau *radau = instance->solver_memory;
   struct RadauSaved *saved = radau->saved;
   double time = instance->fmu_state->last_step.end;
   const char *problem = begin(instance, radau, time);
   if (problem != NULL) return problem;
+  if (!saved->keeps_jacobian && !renew_jacobian(instance, radau, time)) return no_solution;
   const struct RadauMethod *method = &methods[saved->next_method];
   bool failed = false;
-  double step = trial_step(instance, radau, time, communication->end - communication->start);
+  double step = trial_step(instance, radau, time, communication);
   for (int attempt = 0; attempt < ATTEMPT_LIMIT; attempt++) {
     if (solver_step_vanishes(time, step)) return solver_vanished_step;
     double contraction = saved->contraction, error = 1.0;
     int iterations = 0;
     if (radau_systems_factor(&radau->systems, method, step))
       iterations = solve_stages(instance, radau, method, time, step, &contraction);
-    failed |= iterations == 0;
     if (iterations > 0) error = estimate_error(instance, radau, method, time, step, saved->step == 0.0 || attempt > 0);
     double next = iterations > 0 ? step * factor_of_step(saved, method, step, error, iterations) : 0.3 * step;
     if (error < 1.0) {
@@ -430,8 +466,13 @@ static const char *radau_advance(struct Instance *instance, const struct Communi
       saved->error = fmax(error, 1e-2);
       saved->contraction = contraction;
       choose_method(instance, saved, failed);
+      choose_jacobian(saved, method);
       return NULL;
     }
+    bool may_be_old = saved->keeps_jacobian;
+    if (may_be_old && !renew_jacobian(instance, radau, time)) return no_solution;
+    if (may_be_old && iterations == 0) continue; /* the same step, with the Jacobian here */
+    failed |= iterations == 0;
     step = fmin(next, 0.9 * step);
   }
   return "steps were rejected too often";

@@ -42,9 +42,12 @@ struct RadauSystems {
   double *work;                          /* workspace of lagrangian.implicit.lu */
 };
 
-/* Returns the number of doubles that the systems need; radau_systems_slot() divides them among the arrays. */
+/*
+ * Returns the number of doubles that the systems need beside the Jacobian's elements; radau_systems_slot() divides them
+ * among the arrays.
+ */
 size_t radau_systems_size(void);
-void radau_systems_slot(struct RadauSystems *systems, double *memory);
+void radau_systems_slot(struct RadauSystems *systems, double *jacobian, double *memory);
 
 /*
  * Evaluates the Jacobian, with 0 for elements that are not finite, as at a root of 0: the iterations need an

@@ -12,7 +12,7 @@ static size_t width_of(int j) {
 size_t radau_systems_size(void) {
   size_t rows = lu_rows(), states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
   size_t factors = lagrangian.implicit.lu->size(REAL) + (SYSTEM_LIMIT - 1) * lagrangian.implicit.lu->size(COMPLEX);
-  return count + (count + rows) + factors + 2 * COMPLEX * states + 2 * COMPLEX * rows;
+  return (count + rows) + factors + 2 * COMPLEX * states + 2 * COMPLEX * rows;
 }
 
 /*
@@ -29,12 +29,12 @@ static void find_slots(struct RadauSystems *systems) {
         systems->slot[e] = lagrangian.implicit.lu->slot((size_t)pattern->row[e] - n, column < n ? column : column - n);
 }
 
-void radau_systems_slot(struct RadauSystems *systems, double *memory) {
+void radau_systems_slot(struct RadauSystems *systems, double *jacobian, double *memory) {
   size_t states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
-  systems->values = memory;
-  systems->slot = (size_t *)(memory + count);
-  systems->diagonal = (size_t *)(memory + 2 * count);
-  memory += 2 * count + lu_rows();
+  systems->values = jacobian;
+  systems->slot = (size_t *)memory;
+  systems->diagonal = (size_t *)(memory + count);
+  memory += count + lu_rows();
   for (int j = 0; j < SYSTEM_LIMIT; j++) {
     systems->factors[j] = memory;
     memory += lagrangian.implicit.lu->size(width_of(j));

@@ -127,7 +127,8 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   const char *problem = check_cost(instance, step, course);
   if (problem != NULL) return problem;
   struct CommunicationStep near = *step; /* ends sooner if long steps cannot separate the events */
-  if (course->progress.step_limit > 0.0) near.end = fmin(step->end, last->end + course->progress.step_limit);
+  near.step_limit = course->progress.step_limit;
+  if (near.step_limit > 0.0) near.end = fmin(step->end, last->end + near.step_limit);
   problem = lagrangian.solver->advance(instance, &near);
   const char *barrier = problem;
   if (barrier != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, barrier, &course->progress);
