@@ -125,31 +125,22 @@ def test_the_friction_of_bounces_that_are_cut_short(method):
     assert instance.get("v", "w") == pytest.approx([5 - 0.3 * (10 * 1.4 - 2), 0], abs=1e-11)
 
 
-@pytest.mark.parametrize("speed", [0.2, 1.0, 2.6])
-@pytest.mark.parametrize("tolerance", [1e-6, 1e-8])
+@pytest.mark.parametrize("speed", [0.2, 1.0, 3.0])
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-4, 1e-6, 1e-8])
 @pytest.mark.parametrize("method", ["taylor", "radau", "bdf", "erk"])
 def test_lift_off_without_speed(method, tolerance, speed):
     """
     The body leaves the dome at c = cos(theta) = 2/3 + v^2/3g with the speed sqrt(g c): a parabola from there on, whose gap grows as t^3.
+    Where a communication step ends just behind, the method's errors are larger than the gap, which must not be taken for impacts.
     """
     instance = Instance(f"Dome_{method}").initialize({"vx": speed}, tolerance=tolerance)
-    instance.step(2)
+    for _ in range(200):
+        instance.step(0.01)
     c = (2 + speed**2 / 9.81) / 3
     s = (1 - c**2) ** 0.5
     x, y, vx = instance.get("x", "y", "vx")
     assert vx == pytest.approx(c * (9.81 * c) ** 0.5, rel=30 * tolerance)
     assert y == pytest.approx(c - s / c * (x - s) - (x - s) ** 2 / (2 * c**3), rel=100 * tolerance)
-
-
-def test_a_solver_recommends_others_only():
-    """At errors of 1e-4, bdf cannot resolve lift-off from the dome if a step ends just behind it; the message recommends taylor only."""
-    instance = Instance("Dome_bdf").initialize({"vx": 3.0}, tolerance=1e-4)
-    with instance.fails(DISCARD, r"a contact opens and closes without end \(Zeno behaviour\)$"):
-        for _ in range(20):
-            instance.step(0.01)
-    [text] = [text for _, _, text in instance.messages if "contact 'dome'" in text]
-    assert '<solver method="taylor"/>' in text and "bdf" not in text
-    assert instance.get("y") == pytest.approx((2 + 9 / 9.81) / 3, abs=3e-3)
 
 
 @pytest.mark.parametrize("name", ["Crank_taylor", "Crank_radau", "Crank_bdf", "Slider_taylor"])

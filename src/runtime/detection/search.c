@@ -341,13 +341,11 @@ static bool is_of_gap(const struct Search *search, size_t indicator) {
 
 /*
  * Returns the value to which an indicator may fall without an event, from its value at the start. An event, or the
- * method, may have left it below 0. The method's errors count for a velocity that begins to slide. They also count for
- * gaps after the limit of a force, where a contact lifts or a friction slips.
+ * method, may have left it below 0. The method's errors count for a velocity that begins to slide.
  */
-static double floor_of(const struct Search *search, size_t indicator, double start, bool departs) {
-  double error_bound = FLOOR_IN_ERROR_BOUND * search->error_bound[indicator], error = 0.0;
-  if ((departs && is_of_gap(search, indicator)) || is_of_sliding(search, indicator))
-    error = solver_error(search->instance);
+static double floor_of(const struct Search *search, size_t indicator, double start) {
+  double error_bound = FLOOR_IN_ERROR_BOUND * search->error_bound[indicator];
+  double error = is_of_sliding(search, indicator) ? solver_error(search->instance) : 0.0;
   return start >= -error - error_bound && (error == 0.0 || start <= error + error_bound) ? fmin(start, -error) : 0.0;
 }
 
@@ -412,7 +410,7 @@ static double first_sample(const struct Instance *instance, double from, double 
   return first;
 }
 
-bool search_for_event(struct Instance *instance, double from, double to, const double *samples, bool departs,
+bool search_for_event(struct Instance *instance, double from, double to, const double *samples,
                       enum Exactness exactness, double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);
@@ -433,7 +431,7 @@ bool search_for_event(struct Instance *instance, double from, double to, const d
     search.projects = may_be_constrained(&search, i);
     if (search.projects) project_samples(&search, i, from, to);
     double start = sign * search.samples[(size_t)CHEBYSHEV_DEGREE * count + i];
-    search.floor = floor_of(&search, i, start, departs);
+    search.floor = floor_of(&search, i, start);
     for (int k = 0; k < CHEBYSHEV_NODES; k++) f[k] = sign * search.samples[(size_t)k * count + i] - search.floor;
     double found = sign == 0.0 ? first_departure(&search, i, from, to)
                                : first_fall_in(&search, i, sign, f, from, to, fmin(to, *time), DEPTH_LIMIT);

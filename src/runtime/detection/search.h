@@ -17,11 +17,10 @@ size_t search_work_count(void);
 
 /*
  * Finds the first time in [from, to], within the solver's last step, at which an indicator changes its sign. samples:
- * as search_interval_shorten() gives them for this interval. departs: the last event was the limit of a force, after
- * which gaps may open without speed, and fall by the errors of the method. False if no indicator changes its sign.
- * *time is NAN if zeros cannot be separated.
+ * as search_interval_shorten() gives them for this interval. False if no indicator changes its sign. *time is NAN if
+ * zeros cannot be separated.
  */
-bool search_for_event(struct Instance *instance, double from, double to, const double *samples, bool departs,
+bool search_for_event(struct Instance *instance, double from, double to, const double *samples,
                       enum Exactness exactness, double *time, size_t *indicator);
 
 /*

@@ -119,24 +119,6 @@ static const char *stop_at_event(struct Instance *instance, struct Communication
   return start_anew(instance, step, time);
 }
 
-/*
- * Handles an event, whose state is in event_state, or ends the step before it. Returns NULL, or the reason why the
- * motion ends there.
- */
-static const char *pass_event(struct Instance *instance, struct CommunicationStep *step, double time,
-                              size_t indicator) {
-  if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
-  if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
-  /* an importer in event mode without early return handles the events at the end of a step */
-  if (instance->uses_event_mode && step->end - time <= rounding_of_time(step->end))
-    return stop_at_event(instance, step, step->end, indicator);
-  const struct SampleMetadata *sample = sample_of(lagrangian.switches, indicator);
-  double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal up to rounding, but without drift */
-  const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);
-  const char *obstacle = start_anew(instance, step, time);
-  return problem != NULL ? problem : obstacle;
-}
-
 /* Finds the next event up to an end. False if there is none. *time is NAN if it cannot be located. */
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
@@ -147,8 +129,7 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
     const double *samples;
     bool is_sure = search_interval_shorten(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (search_for_event(instance, progress->searched, near, samples, progress->departs, TO_ROUNDING, time, indicator))
-      return true;
+    if (search_for_event(instance, progress->searched, near, samples, TO_ROUNDING, time, indicator)) return true;
     look_ahead = 2.0 * (near - progress->searched);
     progress->searched = near;
     progress->close_events = 0;
@@ -185,7 +166,7 @@ static void search_further(struct Instance *instance, const struct Communication
   const double *samples;
   size_t indicator;
   if (search_interval_shorten(instance, from, &to, &samples)) {
-    bool happens = search_for_event(instance, from, to, samples, false, BEFORE_IT, &time, &indicator);
+    bool happens = search_for_event(instance, from, to, samples, BEFORE_IT, &time, &indicator);
     if (!happens) progress->searched = to;
     else if (!isnan(time)) progress->searched = from + share_before_event * (time - from);
   }
@@ -230,7 +211,6 @@ static void count_event(const struct Instance *instance, const struct Communicat
   progress->last = time - step->start;
   progress->count++;
   progress->indicator = indicator;
-  progress->departs = indicator_is_force(instance, indicator);
   progress->searched = time;
 }
 
@@ -244,6 +224,27 @@ static void name_indicator(size_t indicator, char *text, size_t size) {
   else if (is_of_contact(indicator))
     snprintf(text, size, "the contact '%s'", switches->contacts[indicator - contact_indicator(switches, 0)].name);
   else snprintf(text, size, "the friction '%s'", switches->frictions[friction].name);
+}
+
+/*
+ * Handles an event, whose state is in event_state, or ends the step before it. If a contact lifts whose gap falls below
+ * 0, the errors of the method are larger than the gap. The next step of the solver is then shorter. Returns NULL, or
+ * the reason why the motion ends there.
+ */
+static const char *pass_event(struct Instance *instance, struct CommunicationStep *step, double time, size_t indicator,
+                              struct EventProgress *progress) {
+  if (!are_finite(instance->event_state, lagrangian.state_count)) return "the motion grows without bound";
+  if (instance->stops_at_events) return stop_at_event(instance, step, time, indicator);
+  /* an importer in event mode without early return handles the events at the end of a step */
+  if (instance->uses_event_mode && step->end - time <= rounding_of_time(step->end))
+    return stop_at_event(instance, step, step->end, indicator);
+  const struct SampleMetadata *sample = sample_of(lagrangian.switches, indicator);
+  double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal up to rounding, but without drift */
+  bool is_gap = is_bounce(instance, indicator);
+  const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);
+  if (is_gap && instance->lifts) progress->step_limit = (instance->fmu_state->last_step.end - time) / NEARER;
+  const char *obstacle = start_anew(instance, step, time);
+  return problem != NULL ? problem : obstacle;
 }
 
 /* Ends the step before an event that cannot be resolved. */
@@ -312,6 +313,17 @@ static bool ends_at_sample(const struct Instance *instance, double end, size_t *
   return false;
 }
 
+/*
+ * Sets event_state to the state at a time. Inside a step, a method with larger errors than rounding leaves the
+ * constraints a little; the gap of a contact that opens must begin at 0. False if the state is not available.
+ */
+static bool take_event_state(struct Instance *instance, double time) {
+  const struct Solver *solver = lagrangian.solver;
+  if (!solver->interpolate(instance, time, instance->event_state)) return false;
+  if (solver_error(instance) == 0.0 || solver_project(instance, time, instance->event_state) == NULL) return true;
+  return solver->interpolate(instance, time, instance->event_state);
+}
+
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->fmu_state->last_step.end, step->end), time;
   size_t indicator = 0;
@@ -330,9 +342,8 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   if (progress->close_events >= EVENT_LIMIT || progress->close_events_at_rest >= EVENT_LIMIT)
     return report_zeno(instance, step, progress, indicator);
   if (instance->stops_at_events) instance->fmu_state->close_events = progress->close_events;
-  if (!lagrangian.solver->interpolate(instance, time, instance->event_state))
-    return "the state is not available at the event";
-  return pass_event(instance, step, time, indicator);
+  if (!take_event_state(instance, time)) return "the state is not available at the event";
+  return pass_event(instance, step, time, indicator, progress);
 }
 
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
@@ -343,7 +354,7 @@ const char *events_pass_barrier(struct Instance *instance, struct CommunicationS
   if (!search_for_jump(instance, &time, instance->event_state, &indicator)) return problem;
   if (time > step->end) time = step->end;
   progress->searched = time;
-  return pass_event(instance, step, time, indicator);
+  return pass_event(instance, step, time, indicator, progress);
 }
 
 const char *events_check(struct Instance *instance, double time) {

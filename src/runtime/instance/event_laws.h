@@ -26,7 +26,6 @@ struct EventProgress {
   double step_limit;        /* limit of the solver's step in s if events lie too close for longer ones; 0 for none */
   int nearer;               /* times that this was shortened since a solver step without events */
   size_t indicator;         /* of the last event */
-  bool departs;             /* the last event was the limit of a force, of a contact or friction */
 };
 
 /* The functions of the room events/, which FMUs without events do not link. */

@@ -122,6 +122,7 @@ struct Instance {
   double departure;               /* the sign with which a branch at rest at 0 last left it */
   bool uses_event_mode;           /* co-simulation: the importer handles events between steps */
   bool stops_at_events;           /* an event ends a communication step */
+  bool lifts;                     /* the contact whose gap reached 0 in the last event lifts */
   bool was_at_zero;               /* the last event's indicator had not left 0 before by more than rounding */
   struct Scratch scratch[SCRATCH_USES]; /* workspace of events */
   double *event_state;                  /* with events: the state after the last one; then state_count of workspace */

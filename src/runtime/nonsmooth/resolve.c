@@ -15,6 +15,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "instance/active_constraints.h"
 #include "nonsmooth/branches.h"
 #include "nonsmooth/conditions.h"
 #include "nonsmooth/continuity.h"
@@ -217,6 +218,16 @@ static void log_switches(const struct Resolution *resolution) {
   }
 }
 
+/* True if the open contact whose gap has reached 0 lifts: its gap neither closes nor is about to. */
+static bool lifts(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t contact = resolution->indicator - contact_indicator(switches, 0), slot = contact_slot(switches, contact, 0);
+  if (resolution->occasion != AT_EVENT || contact >= switches->contact_count) return false;
+  const double *value = resolution->value + slot, *error_bound = resolution->error_bound + slot;
+  return !contact_holds(resolution->instance, contact) && value[CONTACT_ACCELERATION] > 0.0 &&
+         value[CONTACT_RATE] >= -error_bound[CONTACT_RATE];
+}
+
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                     bool *changed) {
   struct Resolution resolution = resolution_at(instance, time, state, occasion);
@@ -241,6 +252,7 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
     instance->fmu_state->statistics[STATISTIC_EVENTS]++;
     if (problem == NULL) log_switches(&resolution);
   }
+  instance->lifts = problem == NULL && lifts(&resolution);
   *changed = resolution.changed;
   return problem;
 }
