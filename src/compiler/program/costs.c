@@ -7,6 +7,8 @@
 
 #include <math.h>
 
+#include "program/codegen/regions.h"
+
 /* Returns the operations of an instruction list; 0 for NULL. */
 static double operations_of(const struct IrFunction *ir) {
   /* an elementary function takes the time of about 20 additions */
@@ -19,11 +21,20 @@ static double operations_of(const struct IrFunction *ir) {
   return count;
 }
 
-/* Returns the operations of a Jacobian, by elements or by directional derivatives; 0 without one. */
-static double operations_of_jacobian(const struct Program *program) {
+/* As above; a table skips most of its regions, such as shapes that touch nothing. */
+static double operations_in(const struct IrFunction *ir, bool is_table) {
+  const double skipped_share = 0.75;
+  if (ir == NULL || ir->count == 0 || !is_table) return operations_of(ir);
+  return operations_of(ir) * (1.0 - skipped_share * (double)regions_length(ir) / (double)ir->count);
+}
+
+/*
+ * Returns the operations of a Jacobian, by elements or by directional derivatives with these operations; 0 without one.
+ */
+static double operations_of_jacobian(const struct Program *program, double direction) {
   if (program->expressions->jacobian == NULL || program->expressions->jacobian->value != NULL)
     return operations_of(program->ir_functions[FUNCTION_JACOBIAN]);
-  return (double)program->interface->state_count * operations_of(program->ir_functions[FUNCTION_DIRECTIONAL]);
+  return (double)program->interface->state_count * direction;
 }
 
 /*
@@ -42,9 +53,10 @@ static void count_factors(const struct Program *program, double *elements, doubl
 
 struct OperationCounts operation_counts_of(const struct Program *program) {
   double elements = 0.0, squares = 0.0;
+  double direction = operations_of(program->ir_functions[FUNCTION_DIRECTIONAL]);
   if (program->expressions->jacobian != NULL) count_factors(program, &elements, &squares);
   return (struct OperationCounts){.derivatives = operations_of(program->ir_functions[FUNCTION_DERIVATIVES]),
-                                  .jacobian = operations_of_jacobian(program),
+                                  .jacobian = operations_of_jacobian(program, direction),
                                   .series = operations_of(program->series->order),
                                   .recurrences = (double)program->series->recurrences,
                                   .factor = squares,
@@ -52,22 +64,24 @@ struct OperationCounts operation_counts_of(const struct Program *program) {
 }
 
 /* Typical at medium tolerances: order of series, stages of Radau IIA, evaluations for each Jacobian. */
-enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 25 };
+enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 100 };
 
 /* Returns the work of one evaluation by a Runge-Kutta or implicit method, with its share of linear algebra. */
 static double work_of_evaluation(const struct Program *program) {
-  double work = 250.0 + operations_of(program->ir_functions[FUNCTION_DERIVATIVES]);
+  double work = 250.0 + operations_in(program->ir_functions[FUNCTION_DERIVATIVES], program->derivatives_are_table);
   if (program->expressions->jacobian == NULL) return work;
   double elements, squares, systems = 4.0 * STAGES - 2.0;
   count_factors(program, &elements, &squares);
+  double direction = operations_in(program->ir_functions[FUNCTION_DIRECTIONAL], program->directional_is_table);
   return work + 5.0 * STAGES * (double)program->interface->state_count + systems / STAGES * elements +
-         (operations_of_jacobian(program) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
+         (operations_of_jacobian(program, direction) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
 }
 
 static double work_of_series(const struct Program *program) {
   double states = (double)program->interface->state_count, recurrences = (double)program->series->recurrences;
-  return 380.0 + 4.0 * operations_of(program->ir_functions[FUNCTION_DERIVATIVES]) +
-         ORDER * (0.5 * operations_of(program->series->order) + 1.5 * states + 0.45 * ORDER * recurrences);
+  double derivatives = operations_in(program->ir_functions[FUNCTION_DERIVATIVES], program->derivatives_are_table);
+  double order = operations_in(program->series->order, program->series_is_table);
+  return 380.0 + 4.0 * derivatives + ORDER * (0.5 * order + 1.5 * states + 0.45 * ORDER * recurrences);
 }
 
 /*
