@@ -94,11 +94,11 @@ size_t graph_work_left(const struct Graph *graph) {
   return graph->cone->work < WORK_LIMIT ? WORK_LIMIT - graph->cone->work : 0;
 }
 
-_Static_assert(NODE_LIMIT == 4000000 && WORK_LIMIT == 100000000, "the texts of graph_limit() name the limits");
+_Static_assert(NODE_LIMIT == 4000000 && WORK_LIMIT == 200000000, "the texts of graph_limit() name the limits");
 
 const char *graph_limit(const struct Graph *graph) {
   if (graph->overflow) return "more than 4000000 operations";
-  return graph->cone->work > WORK_LIMIT ? "more than 100000000 steps to read and derive it" : NULL;
+  return graph->cone->work > WORK_LIMIT ? "more than 200000000 steps to read and derive it" : NULL;
 }
 
 static Node intern(struct Graph *graph, struct Vertex vertex) {

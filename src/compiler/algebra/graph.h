@@ -113,7 +113,7 @@ struct Graph {
 };
 
 /* NODE_LIMIT bounds the memory, WORK_LIMIT the steps of graph_work(), and so the time, that any input file takes. */
-enum { NODE_LIMIT = 4000000, WORK_LIMIT = 100000000, ZERO = 0, ONE = 1 };
+enum { NODE_LIMIT = 4000000, WORK_LIMIT = 200000000, ZERO = 0, ONE = 1 };
 
 /* Returns a graph with the constants ZERO and ONE. */
 struct Graph *graph_create(void);

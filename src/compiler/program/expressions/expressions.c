@@ -260,8 +260,10 @@ static void create_watched_series(struct Expressions *expressions) {
   struct Graph *graph = expressions->model->graph;
   if (switching == NULL) return;
   struct NodeList watched = {0};
+  bool have_series = kink_without_series_of(graph, switching->watched, switching->watched_count) == NULL;
   for (size_t i = 0; i < switching->watched_count; i++)
-    if (kink_without_series_of(graph, &switching->watched[i], 1) == NULL) append_node(&watched, switching->watched[i]);
+    if (have_series || kink_without_series_of(graph, &switching->watched[i], 1) == NULL)
+      append_node(&watched, switching->watched[i]);
   expressions->watched_series = series_plan_of_outputs(graph, watched.nodes, watched.count);
 }
 
