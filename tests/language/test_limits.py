@@ -32,7 +32,7 @@ REJECTED = {
     "an index that cannot be counted on": (loops(("1e16", "1e16+1")), "system.xml:4: <for> runs from .* expected whole numbers below 1e9"),
     "an index far below 0": (loops(("-1e9", "-1e9")), "system.xml:4: <for> runs from .* expected whole numbers below 1e9"),
     "nested loops": (loops(("1", "10000"), ("1", "10000"), ("1", "10000")), STEPS),
-    "nested loops of nothing": (loops(("1", "10000"), ("1", "10000"), ("1", "10000"), content=""), f"than 640 MB|{STEPS}"),
+    "nested loops of nothing": (loops(("1", "10000"), ("1", "10000"), ("1", "10000"), content=""), STEPS),
     "long sums in a loop": (loops(("1", "10000"), content="<potential>sum(j, 1, 100000, x)</potential>"), STEPS),
     "accelerations of which each depends on all": (
         loops(("1", "5000"), content='<coordinate name="q[i]" velocity="w[i]"/><kinetic>w[i]^2/2</kinetic>')

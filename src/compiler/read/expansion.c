@@ -18,7 +18,7 @@
 #include "names/definitions.h"
 
 /* Largest number of repetitions of a <for>; units of work of a repetition, an include and an element. */
-enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 20, INCLUDE_WORK = 1000, ELEMENT_WORK = 500 };
+enum { REPETITION_LIMIT = 10000, REPETITION_WORK = 40, INCLUDE_WORK = 2000, ELEMENT_WORK = 1000 };
 
 /* Bound of indices, all of which are exact in a double. */
 static const double index_limit = 1e9;

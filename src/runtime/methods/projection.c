@@ -462,8 +462,8 @@ static bool follow_change(struct Instance *instance) {
 
 static const char *weakest(struct Instance *instance, double time, const double *state) {
   struct ProjectionWork work = work_of(instance);
-  size_t found = lagrangian.constraints.count;
-  double least = 1e-3; /* of 1 for a constraint that is independent of the others */
+  size_t found = 0;
+  double least = INFINITY;
   memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
   if (!evaluate_residual(instance, time, state, POSITIONS)) return NULL;
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
@@ -472,7 +472,7 @@ static const char *weakest(struct Instance *instance, double time, const double 
     least = hold;
     found = j;
   }
-  return found < lagrangian.constraints.count ? lagrangian.constraints.names[found] : NULL;
+  return lagrangian.constraints.names[found];
 }
 
 const struct Projection projection = {.project = project,

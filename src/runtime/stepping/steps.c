@@ -38,6 +38,10 @@ static const double SLOW_WORK = 2e9;
 /* Operations in a communication step if the system sets no maxSteps: about 10 s. */
 static const double WORK_LIMIT = 3e10;
 
+static const char too_much_work[] = "the limit of work in one communication step, about 10 s, is reached; expected a "
+                                    "shorter step, or a larger maxSteps of <solver>";
+static const char too_many_steps[] = "maxSteps of <solver> is reached in one communication step; expected a shorter "
+                                     "step, or a larger maxSteps";
 static const char usual_remedy[] = "retrying will not help; restore an earlier state, and use a larger tolerance, "
                                    "other parameters or other coordinates";
 
@@ -96,13 +100,8 @@ static double work_in_step(const struct Instance *instance, const struct Communi
 
 /* Returns NULL, or the limit that is exceeded. */
 static const char *excess(const struct CommunicationStep *step, double work) {
-  if (lagrangian.steps.max_steps == 0)
-    return work < WORK_LIMIT ? NULL
-                             : "the limit of work in one communication step, about 10 s, is reached; expected a "
-                               "shorter step, or a larger maxSteps of <solver>";
-  return step->count < lagrangian.steps.max_steps ? NULL
-                                                  : "maxSteps of <solver> is reached in one communication step; "
-                                                    "expected a shorter step, or a larger maxSteps";
+  if (lagrangian.steps.max_steps == 0) return work < WORK_LIMIT ? NULL : too_much_work;
+  return step->count < lagrangian.steps.max_steps ? NULL : too_many_steps;
 }
 
 /* Checks limits of steps and work; warns of slowness once. Returns NULL, or the reason for giving up. */
@@ -206,7 +205,8 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
-  bool is_explained = ends_at_event || (laws != NULL && laws->explain_stop(instance, reached));
+  bool is_explained = ends_at_event || reason == too_much_work || reason == too_many_steps ||
+                      (laws != NULL && laws->explain_stop(instance, reached));
   if (!is_explained && violated_constraint > 0)
     log_violated(instance, STATUS_DISCARD, reached, violated_constraint - 1);
   if (lagrangian.constraints.projection != NULL && !is_explained) log_weakest(instance, reached);
