@@ -21,11 +21,28 @@ static double operations_of(const struct IrFunction *ir) {
   return count;
 }
 
-/* As above; a table skips most of its regions, such as shapes that touch nothing. */
-static double operations_in(const struct IrFunction *ir, bool is_table) {
+/*
+ * Returns the share of a block's operations that take place. Hardly more constraints than coordinates hold at a time;
+ * others are idle, as those of open contacts.
+ */
+static double active_share(const struct InertiaBlock *block) {
+  double coordinates = (double)(block->count - block->constraint_count);
+  return block->constraint_count > 0 ? fmin(1.0, coordinates / (double)block->constraint_count) : 1.0;
+}
+
+/* Returns the operations that take place. A table skips most of its regions, such as shapes that touch nothing. */
+static double expected_operations(const struct Program *program, const struct IrFunction *ir, bool is_table) {
   const double skipped_share = 0.75;
-  if (ir == NULL || ir->count == 0 || !is_table) return operations_of(ir);
-  return operations_of(ir) * (1.0 - skipped_share * (double)regions_length(ir) / (double)ir->count);
+  if (ir == NULL || ir->count == 0) return 0.0;
+  double factors = 0.0, active = 0.0;
+  for (size_t i = 0; i < ir->count; i++) {
+    if (ir->instructions[i].opcode != FACTOR) continue;
+    const struct InertiaBlock *block = program->blocks.items[ir->instructions[i].result].block;
+    factors += (double)block_operations(block);
+    active += active_share(block) * (double)block_operations(block);
+  }
+  double skipped = is_table ? skipped_share * (double)regions_length(ir) / (double)ir->count : 0.0;
+  return (operations_of(ir) - factors) * (1.0 - skipped) + active;
 }
 
 /*
@@ -68,19 +85,22 @@ enum { ORDER = 12, STAGES = 5, EVALUATIONS_PER_JACOBIAN = 100 };
 
 /* Returns the work of one evaluation by a Runge-Kutta or implicit method, with its share of linear algebra. */
 static double work_of_evaluation(const struct Program *program) {
-  double work = 250.0 + operations_in(program->ir_functions[FUNCTION_DERIVATIVES], program->derivatives_are_table);
+  double work =
+      250.0 + expected_operations(program, program->ir_functions[FUNCTION_DERIVATIVES], program->derivatives_are_table);
   if (program->expressions->jacobian == NULL) return work;
   double elements, squares, systems = 4.0 * STAGES - 2.0;
   count_factors(program, &elements, &squares);
-  double direction = operations_in(program->ir_functions[FUNCTION_DIRECTIONAL], program->directional_is_table);
+  double direction =
+      expected_operations(program, program->ir_functions[FUNCTION_DIRECTIONAL], program->directional_is_table);
   return work + 5.0 * STAGES * (double)program->interface->state_count + systems / STAGES * elements +
          (operations_of_jacobian(program, direction) + systems * squares) / EVALUATIONS_PER_JACOBIAN;
 }
 
 static double work_of_series(const struct Program *program) {
   double states = (double)program->interface->state_count, recurrences = (double)program->series->recurrences;
-  double derivatives = operations_in(program->ir_functions[FUNCTION_DERIVATIVES], program->derivatives_are_table);
-  double order = operations_in(program->series->order, program->series_is_table);
+  double derivatives =
+      expected_operations(program, program->ir_functions[FUNCTION_DERIVATIVES], program->derivatives_are_table);
+  double order = expected_operations(program, program->series->order, program->series_is_table);
   return 380.0 + 4.0 * derivatives + ORDER * (0.5 * order + 1.5 * states + 0.45 * ORDER * recurrences);
 }
 
@@ -95,8 +115,9 @@ struct StepWork step_work_of(const struct Program *program) {
   bool has_series = program->equations->method->series == ALL_TERMS && program->series != NULL;
   double share = program->ir_functions[FUNCTION_CORRECT_VELOCITIES] != NULL ? 2.0 : 1.0;
   double evaluation = share * work_of_evaluation(program);
-  double step = 250.0 + CORRECTIONS * (operations_of(program->ir_functions[FUNCTION_CORRECT_POSITIONS]) +
-                                       operations_of(program->ir_functions[FUNCTION_CORRECT_VELOCITIES]));
+  double step =
+      250.0 + CORRECTIONS * (expected_operations(program, program->ir_functions[FUNCTION_CORRECT_POSITIONS], false) +
+                             expected_operations(program, program->ir_functions[FUNCTION_CORRECT_VELOCITIES], false));
   if (has_series) step += fmax(0.0, share * work_of_series(program) - evaluation);
   if (program->ir_functions[FUNCTION_INDICATORS] != NULL)
     step += SEARCHES * (LOOK + operations_of(program->ir_functions[FUNCTION_INDICATORS]) +

@@ -83,8 +83,7 @@ void append_solution(struct CodeGenerator *generator, const struct LoopedBlocks 
   ir_append(generator->ir, SOLVE, (Slot)number, 0, 0, 0);
 }
 
-/* Returns the arithmetic operations of one factorization and one solution of the block. */
-static size_t factor_operations(const struct InertiaBlock *block) {
+size_t block_operations(const struct InertiaBlock *block) {
   size_t elements = block->start[block->count], operations = block->count + 4 * (elements - block->count);
   size_t *below = allocate(block->count, sizeof *below); /* the elements of each column of L, diagonal included */
   for (size_t i = 0; i < elements; i++) below[block->column[i]]++;
@@ -103,7 +102,7 @@ void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *lo
 
 void append_factor(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t number) {
   ir_append(generator->ir, FACTOR, (Slot)number, 0, 0, 0);
-  generator->ir->operation_count += factor_operations(blocks->items[number].block);
+  generator->ir->operation_count += block_operations(blocks->items[number].block);
 }
 
 void append_factors(struct CodeGenerator *generator, const struct LoopedBlocks *blocks) {

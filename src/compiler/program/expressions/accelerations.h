@@ -53,6 +53,9 @@ void define_unknowns(struct CodeGenerator *generator, const struct Equations *eq
 /* Copies the elements of the block, which must be computed, to SPACE_MASS. */
 void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *looped);
 
+/* Returns the arithmetic operations of one factorization and one solution of the block. */
+size_t block_operations(const struct InertiaBlock *block);
+
 /* Appends the factorization of the block, whose elements must be in SPACE_MASS. */
 void append_factor(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t block);
 
