@@ -19,12 +19,6 @@
 /* Replaces M by L (below the diagonal) and D (on it). Returns 0, or 1 + the first row whose pivot is not positive. */
 size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, Real *m);
 
-/*
- * Returns the sum of L_ik D_k L_jk over the columns k < j that rows i and j share. Row j holds L there, row i holds L
- * D. slot is the index of column j in row i.
- */
-Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t slot);
-
 /* True if the row of a pivot is inactive in all lanes: the pivot is -INFINITY, as that of an open contact. */
 static inline bool ldlt_is_idle(Real pivot) {
   Condition has_part = pivot != -INFINITY;

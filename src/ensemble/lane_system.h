@@ -23,7 +23,6 @@
 #define instructions_run_order lane_instructions_run_order
 #define instructions_limit lane_instructions_limit
 #define ldlt_factor lane_ldlt_factor
-#define ldlt_product_of_rows lane_ldlt_product_of_rows
 #define ldlt_solve lane_ldlt_solve
 #define saddle_null_vector lane_saddle_null_vector
 #define saddle_factor lane_saddle_factor

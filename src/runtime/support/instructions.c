@@ -1,6 +1,7 @@
 #include "instructions.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "ldlt.h"
 
@@ -98,6 +99,14 @@ static inline uint32_t space_of_operand(uint32_t spaces, int number) {
   return spaces >> number * SPACE_BITS & SPACE_MASK;
 }
 
+/* Sets count neighbours to one value; most are elements of K that are 0. */
+static void fill_neighbours(Real *first, uint32_t count, Real value) {
+  Condition is_other = value != 0.0;
+  if (!ANYWHERE(is_other)) memset(first, 0, count * sizeof *first);
+  else
+    for (uint32_t i = 0; i < count; i++) first[i] = value;
+}
+
 int instructions_run(const struct Frame *frame, const uint32_t *code) {
   Real *const *base = frame->base;
   for (;;) {
@@ -109,7 +118,13 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
     const Real *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
     code += 3;
     switch (opcode) {
-    case COPY: EACH(2, R = A);
+    case COPY:
+      if (is_spaced && code[1] == 1 && code[3] == 0) {
+        fill_neighbours(r + code[0], count, a[code[2]]);
+        code += 4;
+        break;
+      }
+      EACH(2, R = A);
     case FIRST_SLOPE: EACH(2, R = (&A)[1]);
     case SUM: EACH(3, R = A + B);
     case DIFFERENCE: EACH(3, R = A - B);

@@ -24,7 +24,11 @@ static size_t factor_full(size_t n, Real *m) {
   return 0;
 }
 
-Real ldlt_product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t slot) {
+/*
+ * Returns the sum of L_ik D_k L_jk over the columns k < j that rows i and j share. Row j holds L there, row i holds L
+ * D. slot is the index of column j in row i.
+ */
+static Real product_of_rows(const size_t *start, const size_t *column, const Real *m, size_t i, size_t slot) {
   size_t j = column[slot], a = slot, b = start[j + 1] - 1;
   Real sum = REAL(0.0);
   while (a > start[i] && b > start[j]) {
@@ -40,7 +44,7 @@ size_t ldlt_factor(size_t n, const size_t *start, const size_t *column, Real *m)
   for (size_t i = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
     Real diagonal = m[last], pivot = diagonal;
-    for (size_t k = start[i]; k < last; k++) m[k] -= ldlt_product_of_rows(start, column, m, i, k);
+    for (size_t k = start[i]; k < last; k++) m[k] -= product_of_rows(start, column, m, i, k);
     for (size_t k = start[i]; k < last; k++) {
       Real l = m[k] / m[start[column[k] + 1] - 1];
       pivot -= l * m[k];
