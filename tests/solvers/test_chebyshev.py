@@ -1,22 +1,16 @@
 """Chebyshev polynomials of the search for events, from the C code alone, beside those of NumPy."""
 
 import ctypes
-import subprocess
 
 import numpy as np
 import pytest
-from building import ROOT
+from building import functions_of
 from numpy.polynomial import chebyshev
-
-RUNTIME = ROOT / "src" / "runtime"
 
 
 @pytest.fixture(scope="module")
 def library(tmp_path_factory):
-    path = tmp_path_factory.mktemp("chebyshev") / "chebyshev.so"
-    words = ["gcc", "-std=c11", "-O2", "-shared", "-fPIC", f"-I{ROOT}/include", f"-I{RUNTIME}", RUNTIME / "detection" / "chebyshev.c", "-lm", "-o", path]
-    subprocess.run(words, check=True)
-    library = ctypes.CDLL(str(path))
+    library = functions_of(tmp_path_factory.mktemp("chebyshev") / "chebyshev.so", "src/runtime/detection/chebyshev.c")
     for name in ("chebyshev_time", "chebyshev_range", "chebyshev_tail", "chebyshev_value"):
         getattr(library, name).restype = ctypes.c_double
     return library

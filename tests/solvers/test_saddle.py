@@ -1,22 +1,18 @@
 """Saddle-point systems of constraints, from the C code alone: forces of redundant constraints, and of open contacts, whose rows are 0."""
 
 import ctypes
-import subprocess
 
 import numpy as np
 import pytest
-from building import ROOT
+from building import functions_of
 
-SUPPORT = ROOT / "src" / "runtime" / "support"
+SOURCES = ["src/runtime/support/saddle.c", "src/runtime/support/ldlt.c"]
 
 
 @pytest.fixture(scope="module")
 def solve(tmp_path_factory):
     """Return a function that returns accelerations a and forces F of least norm: M a + J^T F = b, J a = d."""
-    path = tmp_path_factory.mktemp("saddle") / "saddle.so"
-    words = ["gcc", "-std=c11", "-O2", "-shared", "-fPIC", f"-I{ROOT}/include", SUPPORT / "saddle.c", SUPPORT / "ldlt.c", "-lm", "-o", path]
-    subprocess.run(words, check=True)
-    library = ctypes.CDLL(str(path))
+    library = functions_of(tmp_path_factory.mktemp("saddle") / "saddle.so", *SOURCES)
     library.saddle_factor.restype = ctypes.c_size_t
 
     def solve(mass, jacobian, forces, rates, order):

@@ -3,6 +3,7 @@ Build FMUs of systems that tests write themselves, without CMake. The steps are 
 pack.cmake, with the tools of an existing build. CMake alone would take as long per FMU as the C compiler.
 """
 
+import ctypes
 import fcntl
 import functools
 import hashlib
@@ -65,6 +66,14 @@ def runtime_digest():
     files = [BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
     files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts" / "package").glob("*.cmake"), Path(__file__)]
     return hashlib.sha256("".join(f"{path} {path.stat().st_mtime_ns}\n" for path in sorted(files)).encode()).hexdigest()
+
+
+def functions_of(library, *sources):
+    """Compile files of C, named from the root of the project, to a shared library, and return it for calls of its functions alone."""
+    folders = [f"-I{ROOT / folder}" for folder in ("include", "src/runtime")]
+    files = [ROOT / source for source in sources]
+    subprocess.run(["gcc", "-std=c11", "-O2", "-shared", "-fPIC", *folders, *files, "-lm", "-o", library], check=True)
+    return ctypes.CDLL(str(library))
 
 
 def library_in(folder, name, version):

@@ -6,28 +6,23 @@ exactly that against a velocity that is not 0. Problems with a known solution be
 """
 
 import ctypes
-import subprocess
 
 import clarabel
 import numpy as np
 import pytest
-from building import ROOT
+from building import functions_of
 from scipy import sparse
 
-RUNTIME = ROOT / "src" / "runtime"
 SOURCES = [
-    ROOT / "tests" / "c" / "cones.c", RUNTIME / "nonsmooth" / "contacts" / "elimination.c",
-    *(RUNTIME / "nonsmooth" / "planes" / f"{name}.c" for name in ("cones", "cone_impulses", "cone_interior", "cone_newton")),
+    "tests/c/cones.c", "src/runtime/nonsmooth/contacts/elimination.c",
+    *(f"src/runtime/nonsmooth/planes/{name}.c" for name in ("cones", "cone_impulses", "cone_interior", "cone_newton")),
 ]  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def solve(tmp_path_factory):
     """Return a function that returns impulses, or forces at rest, and whether they are found."""
-    path = tmp_path_factory.mktemp("cones") / "cones.so"
-    words = ["gcc", "-std=c11", "-O2", "-shared", "-fPIC", f"-I{ROOT}/include", f"-I{RUNTIME}", *SOURCES, "-lm", "-o", path]
-    subprocess.run(words, check=True)
-    library = ctypes.CDLL(str(path))
+    library = functions_of(tmp_path_factory.mktemp("cones") / "cones.so", *SOURCES)
 
     def solve(delassus, friction, given, rate, at_rest):
         impulse = np.zeros(len(rate))
