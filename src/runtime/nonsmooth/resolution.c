@@ -88,13 +88,17 @@ const double *resolution_accelerations(const struct Resolution *resolution) {
                                                       : resolution->derivative + lagrangian.coordinate_count;
 }
 
-bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value) {
+static bool find_accelerations(struct Resolution *resolution, const struct Point *point) {
   struct Instance *instance = resolution->instance;
-  struct Point point = solver_point(instance, time, state);
   if (lagrangian.constraints.accelerations != NULL)
-    instance->singular = lagrangian.constraints.accelerations(&point, resolution->acceleration);
-  else instance->singular = lagrangian.derivatives(&point, resolution->derivative);
-  if (instance->singular != 0) return false;
+    instance->singular = lagrangian.constraints.accelerations(point, resolution->acceleration);
+  else instance->singular = lagrangian.derivatives(point, resolution->derivative);
+  return instance->singular == 0;
+}
+
+bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value) {
+  struct Point point = solver_point(resolution->instance, time, state);
+  if (!resolution->keeps_accelerations && !find_accelerations(resolution, &point)) return false;
   resolution->switches->switching_values(&point, resolution_accelerations(resolution), value);
   return true;
 }
@@ -182,6 +186,13 @@ bool resolution_evaluate(struct Resolution *resolution) {
     resolution->largest[rate] = fmax(resolution->largest[rate], fabs(resolution->value[rate]));
   }
   return true;
+}
+
+bool resolution_evaluate_rates(struct Resolution *resolution) {
+  resolution->keeps_accelerations = true;
+  bool is_done = resolution_evaluate(resolution);
+  resolution->keeps_accelerations = false;
+  return is_done;
 }
 
 double resolution_error_bound(const struct Resolution *resolution, size_t slot, size_t rate) {

@@ -41,6 +41,7 @@ struct Resolution {
   bool moved, thrown, set_mode;           /* events have set coordinates; coordinates or velocities; a mode */
   bool lags;                              /* frictions have switched, and velocities were not projected since */
   bool came_to_rest;                      /* contacts came to rest in their last round */
+  bool keeps_accelerations;               /* evaluations use those of the last one */
   bool is_evaluated;                      /* value[] and error_bound are valid */
   bool has_rested, has_left_rest;         /* a velocity has come to rest, or has left it */
   bool is_departure;                      /* the indicator, of a branch, was at rest at 0 until the event */
@@ -138,6 +139,12 @@ struct Resolution resolution_at(struct Instance *instance, double time, double *
 
 /* Evaluates all values and rounding error bounds for the present modes and state. False without accelerations. */
 bool resolution_evaluate(struct Resolution *resolution);
+
+/*
+ * Evaluates all values and rounding error bounds with the accelerations of the last evaluation: behind an impact, the
+ * gaps and the rates. False if the values do not exist.
+ */
+bool resolution_evaluate_rates(struct Resolution *resolution);
 
 /* Evaluates the values at a state, without rounding error bounds. */
 bool resolution_values(struct Resolution *resolution, const double *state, double *value);

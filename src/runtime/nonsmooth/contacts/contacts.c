@@ -574,6 +574,20 @@ static const char *check_gaps(const struct Resolution *resolution) {
   return NULL;
 }
 
+/*
+ * Takes the impact of a contact, and those that follow from it. Rates decide on these; the accelerations of the round
+ * after the first one, with all contacts open, decide which bounces are lost.
+ */
+static const char *take_impacts(struct Resolution *resolution, size_t contact) {
+  size_t count = resolution->switches->contact_count;
+  do {
+    if (!take_impact(resolution, contact)) return report_singular_impact(resolution, contact);
+    if (resolution->impacts == 1 || !resolution_evaluate_rates(resolution)) return NULL; /* the next round evaluates */
+    contact = find_impact(resolution);
+  } while (contact < count && resolution->plastic_impacts <= PLASTIC_LIMIT);
+  return NULL;
+}
+
 static const char *act_once(struct Resolution *resolution, bool *again) {
   const struct SwitchTable *switches = resolution->switches;
   bool may_change = may_change_gaps(resolution) && resolution->occasion != AT_START;
@@ -588,7 +602,7 @@ static const char *act_once(struct Resolution *resolution, bool *again) {
   bool hits = contact<switches->contact_count, is_tried = resolution->plastic_impacts> PLASTIC_LIMIT;
   if (hits && is_tried && closes_clearly(resolution, contact))
     return contact_forces_report_crushed(resolution, contact);
-  if (hits && !is_tried) return take_impact(resolution, contact) ? NULL : report_singular_impact(resolution, contact);
+  if (hits && !is_tried) return take_impacts(resolution, contact);
   if (close_contacts(resolution)) return let_rest(resolution);
   bool lifts;
   if (!lift(resolution, &lifts)) return report_rest(resolution);
