@@ -134,7 +134,7 @@ enum Opcode {
  */
 struct BlockTable {
   size_t count, first_mass, first_right_side;
-  const size_t *start, *column; /* NULL for a full pattern */
+  const size_t *start, *column; /* of ldlt.h or saddle.h; NULL for a full pattern */
   const int *coordinate;        /* of each row: 1 + the index of the coordinate; -1 - that of a constraint */
   /* saddle_factor(), saddle_solve() and saddle_least_forces() for a block with constraints; else NULL */
   size_t (*factor)(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);

@@ -5,8 +5,9 @@
  * -J M^-1 J^T, are negative (M. Benzi, G. H. Golub, J. Liesen: Numerical solution of saddle point problems, Acta
  * Numerica 14, 2005). Constraints that depend on others are found by their pivots and left out, with force 0.
  *
- * K is stored as in ldlt.h. With e elements and c constraints, m holds SADDLE_MASS(e, n, c) numbers: the factors, K
- * itself, the smallest relative pivot of a constraint, 2 n numbers of workspace, and the null space of J^T, see
+ * The pattern of L is that of ldlt.h, with e elements. Without fill-in, K has g elements. column holds the e columns of
+ * L, then the n + 1 numbers of start for K, and the g columns of K. With c constraints, m holds SADDLE_MASS(e, g, n, c) numbers: the factors, K,
+ * the smallest relative pivot of a constraint, 2 n numbers of workspace, and the null space of J^T, see
  * saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the first n are given and
  * solved for.
  */
@@ -20,7 +21,8 @@
 #include "real.h"
 
 /* Numbers of storage for a block and for a right side, see above. */
-#define SADDLE_MASS(elements, n, constraints) (2 * (elements) + 1 + 2 * (n) + (constraints) * ((constraints) + 1) / 2)
+#define SADDLE_MASS(elements, given, n, constraints)                                                                   \
+  ((elements) + (given) + 1 + 2 * (n) + (constraints) * ((constraints) + 1) / 2)
 #define SADDLE_RIGHT_SIDE(n) (4 * (n))
 
 /* Numbers of constraints among those of rows of K, which are positive for rows of M. */
@@ -30,9 +32,9 @@ enum {
 };
 
 /*
- * Replaces K by L (below the diagonal) and D (on it). coordinate: positive numbers for rows of M, negative ones for
+ * Computes L (below the diagonal) and D (on it) from K. coordinate: positive numbers for rows of M, negative ones for
  * constraints, see above. A constraint may depend on those before it, or its row may be 0, as that of an open contact.
- * It gets the pivot -INFINITY, so that its force is 0. Returns 0, or 1 + the first row in which M is not positive
+ * It gets the pivot -INFINITY, so that its force is 0; a row of 0 has no elements of L then. Returns 0, or 1 + the first row in which M is not positive
  * definite.
  */
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
@@ -77,9 +79,9 @@ static inline Real saddle_pivot(Real hold, Real delassus, Real *weakest) {
 /* Above this smallest relative pivot, solutions lose at most a few digits, and are not refined. */
 static const double saddle_weak_share = 1e-3;
 
-/* True if the smallest relative pivot is lower; elements is the number of elements of K. */
+/* True if the smallest relative pivot is lower; elements is the number of those of L and K. */
 static inline Condition saddle_is_weak(size_t elements, const Real *m) {
-  return m[2 * elements] < saddle_weak_share;
+  return m[elements] < saddle_weak_share;
 }
 
 /*

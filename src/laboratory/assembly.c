@@ -122,7 +122,7 @@ static const struct BlockTable *blocks_of(const struct Program *program) {
                                  .coordinate = block_numbers_of(block, program->model).items};
     if (!block_is_full(block)) {
       table->start = block->start;
-      table->column = block->column;
+      table->column = looped->columns;
     }
     if (block->force_count > 0) {
       table->factor = nonsymmetric_factor;

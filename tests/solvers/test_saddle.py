@@ -20,9 +20,12 @@ def solve(tmp_path_factory):
         matrix = np.block([[mass, jacobian.T], [jacobian, np.zeros((constraints, constraints))]])[np.ix_(order, order)]
         start = np.array([i * (i + 1) // 2 for i in range(count + 1)], dtype=np.uintp)
         column = np.concatenate([np.arange(i + 1) for i in range(count)]).astype(np.uintp)
+        places = np.flatnonzero(matrix[np.tril_indices(count)])
+        given, elements = matrix[np.tril_indices(count)][places], len(column)
+        column = np.concatenate([column, np.searchsorted(places, start), column[places]]).astype(np.uintp)
         coordinate = np.array([i + 1 if i < len(mass) else -1 for i in order], dtype=np.int32)
-        work = np.zeros(2 * len(column) + 1 + 2 * count + constraints * (constraints + 1) // 2)
-        work[: len(column)] = matrix[np.tril_indices(count)]
+        work = np.full(elements + len(given) + 1 + 2 * count + constraints * (constraints + 1) // 2, np.nan)
+        work[elements : elements + len(given)] = given
         right = np.zeros(4 * count)
         right[:count] = np.concatenate([forces, rates])[order]
         pattern = [ctypes.c_size_t(count), *(array.ctypes.data_as(ctypes.c_void_p) for array in (start, column))]

@@ -12,8 +12,6 @@
  */
 #include "program/builders.h"
 
-#include "saddle.h"
-
 /*
  * Factor on the diagonal elements of M for fixed coordinates. It is large enough that only the other coordinates
  * move at the start, and small enough that the factors of K keep their digits.
@@ -28,7 +26,7 @@ static void weigh_fixed(const struct Program *program, struct CodeGenerator *gen
   for (size_t i = 0; i < block->count; i++) {
     size_t row = block->coordinates[i];
     if (row >= model->coordinates.count || !model->coordinates.items[row].is_fixed) continue;
-    Slot mass = slot_at(SPACE_MASS, looped->first_mass + block->start[i + 1] - 1);
+    Slot mass = slot_of_diagonal(looped, i);
     ir_append(generator->ir, PRODUCT, mass, mass, weight, 0);
   }
 }
@@ -36,9 +34,8 @@ static void weigh_fixed(const struct Program *program, struct CodeGenerator *gen
 /* Sets the nonsymmetric columns of K to 0: forces that depend on others take no part in corrections and impulses. */
 static void leave_nonsymmetric_out(struct CodeGenerator *generator, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
-  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    generator_copy(generator, slot_at(SPACE_MASS, first + i), ZERO);
+    generator_copy(generator, slot_at(SPACE_MASS, first_nonsymmetric(looped) + i), ZERO);
 }
 
 /* Factors the block and solves for side, with an element for each row of K. starting: fixed coordinates stay. */

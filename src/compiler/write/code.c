@@ -136,7 +136,7 @@ static void write_shared_products(FILE *file, const struct InertiaBlock *block, 
 
 /* Writes the pivot of a row, and the check of it. */
 static void write_pivot(FILE *file, const struct InertiaBlock *block, size_t row, bool is_constraint, size_t number) {
-  size_t first = block->start[row], last = block->start[row + 1] - 1, n = block->count, elements = block->start[n];
+  size_t first = block->start[row], last = block->start[row + 1] - 1;
   fprintf(file, "  const Real pivot%zu = k%zu", row, last);
   for (size_t k = first; k < last; k++) fprintf(file, " - term%zu", k);
   if (!is_constraint) {
@@ -147,25 +147,29 @@ static void write_pivot(FILE *file, const struct InertiaBlock *block, size_t row
   fprintf(file, ", delassus%zu = REAL(0.0)", row);
   for (size_t k = first; k < last; k++) fprintf(file, " + saddle_delassus(term%zu)", k);
   fprintf(file,
-          ";\n  if (ANYWHERE(saddle_is_doubtful(-pivot%zu, delassus%zu, weakest))) {\n"
-          "    for (size_t k = 0; k < %zu; k++) mass[k] = mass[%zu + k];\n"
-          "    return saddle_factor(%zu, start%zu, column%zu, coordinate%zu, mass);\n  }\n"
+          ";\n  if (ANYWHERE(saddle_is_doubtful(-pivot%zu, delassus%zu, weakest)))\n"
+          "    return saddle_factor(%zu, start%zu, column%zu, coordinate%zu, mass);\n"
           "  mass[%zu] = saddle_pivot(-pivot%zu, delassus%zu, &weakest);\n",
-          row, row, elements, elements, n, number, number, number, last, row, row);
+          row, row, block->count, number, number, number, last, row, row);
 }
 
 /*
  * Writes the factorization K = L D L^T of a small block, unrolled. It calls saddle_factor() if a pivot of a constraint
- * is doubtful. The elements are arguments, as vector loads of elements that were just stored would stall.
+ * is doubtful. The elements of K are arguments, as vector loads of elements that were just stored would stall.
  */
-static void write_small_factor(FILE *file, const struct InertiaBlock *block, const struct Model *model, size_t number) {
+static void write_small_factor(FILE *file, const struct LoopedBlock *looped, const struct Model *model, size_t number) {
+  const struct InertiaBlock *block = looped->block;
   size_t n = block->count, elements = block->start[n];
   const size_t *start = block->start, *column = block->column;
   struct BlockNumbers numbers = block_numbers_of(block, model);
   fprintf(file, "static size_t factor%zu(Real *mass", number);
-  for (size_t k = 0; k < elements; k++) fprintf(file, ", Real k%zu", k);
+  for (size_t i = 0; i < looped->place_count; i++) fprintf(file, ", Real k%zu", looped->places[i]);
   fputs(") {\n  Real weakest = REAL(1.0);\n", file);
-  for (size_t k = 0; k < elements; k++) fprintf(file, "  mass[%zu] = k%zu;\n", elements + k, k);
+  for (size_t k = 0, i = 0; k < elements; k++) {
+    bool is_given = i < looped->place_count && looped->places[i] == k;
+    if (is_given) i++;
+    else fprintf(file, "  Real k%zu = REAL(0.0);\n", k);
+  }
   for (size_t i = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
     for (size_t k = start[i]; k < last; k++) write_shared_products(file, block, i, k);
@@ -179,18 +183,19 @@ static void write_small_factor(FILE *file, const struct InertiaBlock *block, con
   fprintf(file,
           "  mass[%zu] = weakest;\n  saddle_null_vector(%zu, start%zu, column%zu, coordinate%zu, mass);\n  return "
           "0;\n}\n\n",
-          2 * elements, n, number, number, number);
+          elements + looped->place_count, n, number, number, number);
 }
 
 /* Writes the solution of a small block, unrolled. It calls saddle_solve() if the solution needs refinement. */
-static void write_small_solve(FILE *file, const struct InertiaBlock *block, size_t number) {
+static void write_small_solve(FILE *file, const struct LoopedBlock *looped, size_t number) {
+  const struct InertiaBlock *block = looped->block;
   size_t n = block->count;
   const size_t *start = block->start, *column = block->column;
   fprintf(file,
           "static inline void solve%zu(const Real *mass, Real *side) {\n"
           "  if (ANYWHERE(saddle_is_weak(%zu, mass))) {\n"
           "    saddle_solve(%zu, start%zu, column%zu, mass, side);\n    return;\n  }\n",
-          number, start[n], n, number, number);
+          number, start[n] + looped->place_count, n, number, number);
   for (size_t i = 0; i < n; i++)
     for (size_t k = start[i]; k + 1 < start[i + 1]; k++)
       fprintf(file, "  side[%zu] -= mass[%zu] * side[%zu];\n", i, k, column[k]);
@@ -204,16 +209,17 @@ static void write_small_solve(FILE *file, const struct InertiaBlock *block, size
 /* Writes the pattern of the factors and the row numbers of each block that is factored at run time. */
 static void write_blocks(FILE *file, const struct Program *program) {
   for (size_t i = 0; i < program->blocks.count; i++) {
-    const struct InertiaBlock *block = program->blocks.items[i].block;
+    const struct LoopedBlock *looped = &program->blocks.items[i];
+    const struct InertiaBlock *block = looped->block;
     if (!block_is_full(block)) {
       write_sizes(file, "size_t", format_text("start%zu", i), block->start, block->count + 1);
-      write_sizes(file, "size_t", format_text("column%zu", i), block->column, block->start[block->count]);
+      write_sizes(file, "size_t", format_text("column%zu", i), looped->columns, looped->column_count);
     }
     struct BlockNumbers numbers = block_numbers_of(block, program->model);
     write_array(file, format_text("coordinate%zu", i), &int_elements, numbers.items, numbers.count);
     if (!program_solves_by_statements(program, i)) continue;
-    write_small_factor(file, block, program->model, i);
-    write_small_solve(file, block, i);
+    write_small_factor(file, looped, program->model, i);
+    write_small_solve(file, looped, i);
   }
 }
 

@@ -93,8 +93,7 @@ static void write_block_call(FILE *file, const struct Program *program, const ch
 static void write_small_factor_call(FILE *file, const struct Program *program, unsigned number) {
   const struct LoopedBlock *looped = &program->blocks.items[number];
   fprintf(file, "factor%u(mass + %zu", number, looped->first_mass);
-  for (size_t k = 0; k < looped->block->start[looped->block->count]; k++)
-    fprintf(file, ", mass[%zu]", looped->first_mass + k);
+  for (size_t i = 0; i < looped->place_count; i++) fprintf(file, ", mass[%zu]", looped->given + i);
 }
 
 static void write_block_statement(FILE *file, const struct Program *program, const struct Instruction *instruction) {

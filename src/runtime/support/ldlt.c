@@ -76,11 +76,13 @@ void ldlt_solve(size_t n, const size_t *start, const size_t *column, const Real 
     solve_full(n, m, x);
     return;
   }
-  for (size_t i = 0; i < n; i++)
-    for (size_t k = start[i]; k + 1 < start[i + 1] && !ldlt_is_idle(m[start[i + 1] - 1]); k++)
-      x[i] -= m[k] * x[column[k]];
+  for (size_t i = 0; i < n; i++) {
+    if (ldlt_is_idle(m[start[i + 1] - 1])) continue;
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) x[i] -= m[k] * x[column[k]];
+  }
   for (size_t i = 0; i < n; i++) x[i] /= m[start[i + 1] - 1];
-  for (size_t i = n; i-- > 0;)
-    for (size_t k = start[i]; k + 1 < start[i + 1] && !ldlt_is_idle(m[start[i + 1] - 1]); k++)
-      x[column[k]] -= m[k] * x[i];
+  for (size_t i = n; i-- > 0;) {
+    if (ldlt_is_idle(m[start[i + 1] - 1])) continue;
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) x[column[k]] -= m[k] * x[i];
+  }
 }

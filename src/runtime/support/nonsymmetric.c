@@ -20,11 +20,11 @@ struct Nonsymmetric {
   size_t right_side; /* SADDLE_RIGHT_SIDE(n) */
 };
 
-static struct Nonsymmetric nonsymmetric_of(size_t n, const size_t *start, const int *coordinate) {
+static struct Nonsymmetric nonsymmetric_of(size_t n, const size_t *start, const size_t *column, const int *coordinate) {
   struct Nonsymmetric nonsymmetric = {.count = (size_t)coordinate[n], .force = coordinate + n + 1};
   size_t constraints = 0;
   for (size_t i = 0; i < n; i++) constraints += coordinate[i] < 0 ? 1 : 0;
-  nonsymmetric.c = SADDLE_MASS(start[n], n, constraints);
+  nonsymmetric.c = SADDLE_MASS(start[n], column[start[n] + n], n, constraints);
   nonsymmetric.response = nonsymmetric.c + n * nonsymmetric.count;
   nonsymmetric.factor = nonsymmetric.response + n * nonsymmetric.count;
   nonsymmetric.pivot = nonsymmetric.factor + nonsymmetric.count * nonsymmetric.count;
@@ -84,7 +84,7 @@ static bool has_part(size_t n, const double *column_of_c) {
 size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m) {
   size_t singular = saddle_factor(n, start, column, coordinate, m);
   if (singular != 0) return singular;
-  struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, coordinate);
+  struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, column, coordinate);
   double *right_side = m + nonsymmetric.right_side, *factor = m + nonsymmetric.factor;
   for (size_t k = 0; k < nonsymmetric.count; k++) {
     memcpy(right_side, m + nonsymmetric.c + k * n, n * sizeof *right_side);
@@ -99,7 +99,7 @@ size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, 
 
 void nonsymmetric_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                         double *x) {
-  struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, coordinate);
+  struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, column, coordinate);
   double *free_force = x + n; /* free, as r < n */
   solve_symmetric(n, start, column, coordinate, m, x);
   for (size_t i = 0; i < nonsymmetric.count; i++) free_force[i] = x[nonsymmetric.force[i]];

@@ -21,14 +21,24 @@
 
 #include "ldlt.h"
 
-/* Subtracts K x from rest. */
-static void subtract_product(size_t n, const size_t *start, const size_t *column, const Real *matrix, const Real *x,
-                             Real *rest) {
+/* K: row i has the elements start[i] .. start[i + 1] - 1. */
+struct Given {
+  const size_t *start, *column;
+  const Real *matrix;
+};
+
+static struct Given given_of(size_t n, const size_t *start, const size_t *column, const Real *m) {
+  const size_t *first = column + start[n];
+  return (struct Given){.start = first, .column = first + n + 1, .matrix = m + start[n]};
+}
+
+/* Subtracts K x from rest, with the first n rows of K. */
+static void subtract_product(size_t n, const struct Given *given, const Real *x, Real *rest) {
   for (size_t i = 0; i < n; i++)
-    for (size_t k = start[i]; k < start[i + 1]; k++) {
-      size_t j = column[k];
-      rest[i] -= matrix[k] * x[j];
-      if (i != j) rest[j] -= matrix[k] * x[i];
+    for (size_t k = given->start[i]; k < given->start[i + 1]; k++) {
+      size_t j = given->column[k];
+      rest[i] -= given->matrix[k] * x[j];
+      if (i != j) rest[j] -= given->matrix[k] * x[i];
     }
 }
 
@@ -44,12 +54,13 @@ static void combine(const size_t *start, const size_t *column, const Real *m, si
 }
 
 /* Returns w^T M w of the coordinates before row i. */
-static Real square_by_mass(const size_t *start, const size_t *column, const int *coordinate, const Real *matrix,
-                           size_t i, const Real *w) {
+static Real square_by_mass(const int *coordinate, const struct Given *given, size_t i, const Real *w) {
   Real sum = REAL(0.0);
   for (size_t row = 0; row < i; row++)
-    for (size_t k = start[row]; coordinate[row] > 0 && k < start[row + 1]; k++)
-      if (coordinate[column[k]] > 0) sum += (column[k] == row ? 1.0 : 2.0) * w[row] * matrix[k] * w[column[k]];
+    for (size_t k = given->start[row]; coordinate[row] > 0 && k < given->start[row + 1]; k++) {
+      size_t j = given->column[k];
+      if (coordinate[j] > 0) sum += (j == row ? 1.0 : 2.0) * w[row] * given->matrix[k] * w[j];
+    }
   return sum;
 }
 
@@ -58,32 +69,31 @@ static Real square_by_mass(const size_t *start, const size_t *column, const int 
  * along it. This has the digits of w, while the pivot is a difference of squares. w is refined once by its residual.
  */
 static Real refined_pivot(const size_t *start, const size_t *column, const int *coordinate, const Real *m,
-                          const Real *matrix, size_t i, Real *w) {
+                          const struct Given *given, size_t i, Real *w) {
   Real *rest = w + i + 1;
   combine(start, column, m, i, w);
   memset(rest, 0, (i + 1) * sizeof *rest);
-  subtract_product(i + 1, start, column, matrix, w, rest);
+  subtract_product(i + 1, given, w, rest);
   ldlt_solve(i, start, column, m, rest);
   for (size_t row = 0; row < i; row++) w[row] += rest[row];
-  return square_by_mass(start, column, coordinate, matrix, i, w);
+  return square_by_mass(coordinate, given, i, w);
 }
 
-/*
- * True if a constraint has a row: that of an open contact is 0, and takes no part. Of many contacts most are open, so
- * that four sums in turn save time.
- */
-static Condition has_row(const size_t *start, const Real *m, size_t i) {
-  Real sum[] = {REAL(0.0), REAL(0.0), REAL(0.0), REAL(0.0)};
-  size_t k = start[i], end = start[i + 1] - 1;
-  for (; k + 4 <= end; k += 4)
-    for (size_t j = 0; j < 4; j++) sum[j] += fabs(m[k + j]);
-  for (; k < end; k++) sum[0] += fabs(m[k]);
-  return sum[0] + sum[1] + (sum[2] + sum[3]) != 0.0;
+/* True if a row of K has elements that are not 0. That of an open contact has none, and takes no part. */
+static Condition has_row(const struct Given *given, size_t i) {
+  Real sum = REAL(0.0);
+  for (size_t k = given->start[i]; k < given->start[i + 1]; k++) sum += fabs(given->matrix[k]);
+  return sum != 0.0;
+}
+
+/* Returns the offset of the smallest relative pivot, which follows L and K. */
+static size_t slot_of_weakest(size_t n, const size_t *start, const size_t *column) {
+  return start[n] + column[start[n] + n];
 }
 
 /* Returns the offset of null-space vector c, which follows the workspace. */
-static size_t slot_of_null_vector(size_t n, const size_t *start, size_t c) {
-  return 2 * start[n] + 1 + 2 * n + c * (c + 1) / 2;
+static size_t slot_of_null_vector(size_t n, const size_t *start, const size_t *column, size_t c) {
+  return slot_of_weakest(n, start, column) + 1 + 2 * n + c * (c + 1) / 2;
 }
 
 /* Returns the component of c + 1 forces along a null-space vector, in units of the vector. */
@@ -107,60 +117,65 @@ static void subtract_component(size_t c, const Real *null_vector, Real *force) {
  * c. The element of c is 1 and is not stored; its slot holds 1 / |vector|^2, or 0 if there is no vector.
  */
 static void find_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
-                             size_t i, size_t c) {
-  Real *null_vector = m + slot_of_null_vector(n, start, c), *forces = m + 2 * start[n] + 1, length = REAL(1.0);
-  Condition follows = BOTH(m[start[i + 1] - 1] == -INFINITY, has_row(start, m, i));
+                             size_t i, size_t c, Condition has_row_of_k) {
+  Real *null_vector = m + slot_of_null_vector(n, start, column, c), length = REAL(1.0);
+  Real *forces = m + slot_of_weakest(n, start, column) + 1;
+  Condition follows = BOTH(m[start[i + 1] - 1] == -INFINITY, has_row_of_k);
   null_vector[c] = REAL(0.0);
   if (!ANYWHERE(follows)) return;
   combine(start, column, m, i, forces);
   for (size_t row = 0, k = 0; row < i; row++)
     if (coordinate[row] < 0) null_vector[k++] = coordinate[row] == SADDLE_NORM ? REAL(0.0) : forces[row];
   null_vector[c] = REAL(1.0);
-  for (size_t j = 0; j < 2 * c; j++) subtract_component(j % c, m + slot_of_null_vector(n, start, j % c), null_vector);
+  for (size_t j = 0; j < 2 * c; j++)
+    subtract_component(j % c, m + slot_of_null_vector(n, start, column, j % c), null_vector);
   for (size_t k = 0; k < c; k++) length += null_vector[k] * null_vector[k];
   null_vector[c] = WHERE(follows, 1.0 / length, 0.0);
 }
 
 void saddle_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
+  const struct Given given = given_of(n, start, column, m);
   for (size_t i = 0, c = 0; i < n; i++)
-    if (coordinate[i] < 0) find_null_vector(n, start, column, coordinate, m, i, c++);
+    if (coordinate[i] < 0) find_null_vector(n, start, column, coordinate, m, i, c++, has_row(&given, i));
 }
 
 /*
- * Replaces the elements of row i before the diagonal by L_ij D_j. spread: n numbers, all 0 before and afterwards, which
- * hold the row by columns, so that products with the rows j need no search for common columns.
+ * Computes the elements L_ij D_j of row i before the diagonal, and K_ii on it. spread: n numbers, all 0 before and
+ * afterwards, which hold the row by columns, so that products with the rows j need no search for common columns.
  */
-static void eliminate_row(const size_t *start, const size_t *column, Real *m, size_t i, Real *spread) {
+static void eliminate_row(const size_t *start, const size_t *column, Real *m, const struct Given *given, size_t i,
+                          Real *spread) {
   size_t last = start[i + 1] - 1;
-  for (size_t k = start[i]; k < last; k++) spread[column[k]] = m[k];
+  for (size_t k = given->start[i]; k < given->start[i + 1]; k++) spread[given->column[k]] = given->matrix[k];
   for (size_t k = start[i]; k < last; k++) {
-    size_t j = column[k], end = start[j + 1] - 1;
-    if (ldlt_is_idle(m[end])) continue;
+    size_t j = column[k], diagonal = start[j + 1] - 1;
+    if (ldlt_is_idle(m[diagonal])) continue;
     Real sum = REAL(0.0);
-    for (size_t e = end; e-- > start[j];) sum += m[e] * spread[column[e]];
-    spread[j] = m[k] - sum;
+    for (size_t e = diagonal; e-- > start[j];) sum += m[e] * spread[column[e]];
+    spread[j] -= sum;
   }
-  for (size_t k = start[i]; k < last; k++) {
+  for (size_t k = start[i]; k <= last; k++) {
     m[k] = spread[column[k]];
     spread[column[k]] = REAL(0.0);
   }
 }
 
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
-  Real *matrix = m + start[n], *weakest = matrix + start[n], *work = weakest + 1, *spread = work + n;
-  memcpy(matrix, m, start[n] * sizeof *m);
+  const struct Given given = given_of(n, start, column, m);
+  Real *weakest = m + slot_of_weakest(n, start, column), *work = weakest + 1, *spread = work + n;
   *weakest = REAL(1.0);
   memset(spread, 0, n * sizeof *spread);
   for (size_t i = 0, c = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
-    if (coordinate[i] < 0 && !ANYWHERE(has_row(start, m, i))) {
+    Condition takes_part = has_row(&given, i);
+    if (coordinate[i] < 0 && !ANYWHERE(takes_part)) {
       m[last] = REAL(-INFINITY);
-      m[slot_of_null_vector(n, start, c) + c] = REAL(0.0);
+      m[slot_of_null_vector(n, start, column, c) + c] = REAL(0.0);
       c++;
       continue;
     }
+    eliminate_row(start, column, m, &given, i, spread);
     Real diagonal = m[last], pivot = diagonal, delassus = REAL(0.0);
-    eliminate_row(start, column, m, i, spread);
     for (size_t k = start[i]; k < last; k++) {
       Real l = m[k] / m[start[column[k] + 1] - 1], term = l * m[k];
       pivot -= term;
@@ -175,34 +190,36 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     Real hold = -pivot;
     Condition doubts = saddle_is_doubtful(hold, delassus, *weakest);
     if (ANYWHERE(doubts)) {
-      hold = WHERE(doubts, refined_pivot(start, column, coordinate, m, matrix, i, work), hold);
+      hold = WHERE(doubts, refined_pivot(start, column, coordinate, m, &given, i, work), hold);
       memset(spread, 0, n * sizeof *spread);
     }
     m[last] = saddle_pivot(hold, delassus, weakest);
-    find_null_vector(n, start, column, coordinate, m, i, c++);
+    find_null_vector(n, start, column, coordinate, m, i, c++, takes_part);
   }
   return 0;
 }
 
 void saddle_solve(size_t n, const size_t *start, const size_t *column, const Real *m, Real *x) {
   Real *rest = x + n;
-  Condition is_weak = saddle_is_weak(start[n], m);
+  const struct Given given = given_of(n, start, column, m);
+  Condition is_weak = saddle_is_weak(slot_of_weakest(n, start, column), m);
   bool is_refined = ANYWHERE(is_weak);
   if (is_refined) memcpy(rest, x, n * sizeof *rest);
   ldlt_solve(n, start, column, m, x);
   if (!is_refined) return;
-  subtract_product(n, start, column, m + start[n], x, rest);
+  subtract_product(n, &given, x, rest);
   ldlt_solve(n, start, column, m, rest);
   for (size_t i = 0; i < n; i++) x[i] = WHERE(is_weak, x[i] + rest[i], x[i]);
 }
 
 /* Subtracts from the forces in x their parts along all null-space vectors. */
-static void shorten_forces(size_t n, const size_t *start, const int *coordinate, const Real *m, Real *x) {
+static void shorten_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+                           Real *x) {
   Real *force = x + n;
   size_t count = 0;
   for (size_t i = 0; i < n; i++)
     if (coordinate[i] < 0) force[count++] = x[i];
-  for (size_t c = 0; c < count; c++) subtract_component(c, m + slot_of_null_vector(n, start, c), force);
+  for (size_t c = 0; c < count; c++) subtract_component(c, m + slot_of_null_vector(n, start, column, c), force);
   for (size_t i = n; i-- > 0;)
     if (coordinate[i] < 0) x[i] = force[--count];
 }
@@ -210,23 +227,25 @@ static void shorten_forces(size_t n, const size_t *start, const int *coordinate,
 /* Corrects the forces in x so that they have the same J^T F as others. */
 static void restore_load(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                          const Real *others, Real *x) {
+  const struct Given given = given_of(n, start, column, m);
   Real *missing = x + n, *load = missing + n;
   for (size_t i = 0; i < n; i++) {
     missing[i] = coordinate[i] < 0 ? x[i] - others[i] : REAL(0.0);
     load[i] = REAL(0.0);
   }
-  subtract_product(n, start, column, m + start[n], missing, load);
+  subtract_product(n, &given, missing, load);
   for (size_t i = 0; i < n; i++) missing[i] = coordinate[i] < 0 ? REAL(0.0) : load[i];
   saddle_solve(n, start, column, m, missing);
   for (size_t i = 0; i < n; i++)
     if (coordinate[i] < 0) x[i] += missing[i];
 }
 
-static bool has_null_vectors(size_t n, const size_t *start, const int *coordinate, const Real *m) {
+static bool has_null_vectors(size_t n, const size_t *start, const size_t *column, const int *coordinate,
+                             const Real *m) {
   bool has = false;
   for (size_t i = 0, c = 0; i < n; i++) {
     if (coordinate[i] >= 0) continue;
-    has |= ANYWHERE(m[slot_of_null_vector(n, start, c) + c] > 0.0);
+    has |= ANYWHERE(m[slot_of_null_vector(n, start, column, c) + c] > 0.0);
     c++;
   }
   return has;
@@ -239,9 +258,9 @@ static bool has_null_vectors(size_t n, const size_t *start, const int *coordinat
 void saddle_least_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                          Real *x) {
   Real *given = x + 3 * n;
-  if (!has_null_vectors(n, start, coordinate, m)) return;
+  if (!has_null_vectors(n, start, column, coordinate, m)) return;
   memcpy(given, x, n * sizeof *given);
-  shorten_forces(n, start, coordinate, m, x);
+  shorten_forces(n, start, column, coordinate, m, x);
   restore_load(n, start, column, coordinate, m, given, x);
-  shorten_forces(n, start, coordinate, m, x);
+  shorten_forces(n, start, column, coordinate, m, x);
 }

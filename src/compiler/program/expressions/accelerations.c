@@ -13,12 +13,53 @@
 #include "nonsymmetric.h"
 #include "saddle.h"
 
-static size_t mass_count_of(const struct InertiaBlock *block) {
-  size_t elements = block->start[block->count];
-  if (block->constraint_count == 0) return elements;
-  if (block->force_count == 0) return SADDLE_MASS(elements, block->count, block->constraint_count);
-  return SADDLE_MASS(elements, block->count, block->constraint_count) +
-         NONSYMMETRIC_MASS(block->count, block->force_count);
+static size_t factor_elements(const struct InertiaBlock *block) {
+  return block->start[block->count];
+}
+
+/* Finds the places of the elements of K: all of them without constraints, else those that are not always 0. */
+static void find_places(struct LoopedBlock *looped) {
+  const struct InertiaBlock *block = looped->block;
+  size_t elements = factor_elements(block);
+  looped->places = allocate(elements, sizeof *looped->places);
+  for (size_t k = 0; k < elements; k++)
+    if (block->constraint_count == 0 || block->mass[k] != ZERO) looped->places[looped->place_count++] = k;
+  looped->given = looped->first_mass + (block->constraint_count > 0 ? elements : 0);
+}
+
+/* Sets column[]: the columns, and with constraints the pattern of K. */
+static void find_columns(struct LoopedBlock *looped) {
+  const struct InertiaBlock *block = looped->block;
+  size_t elements = factor_elements(block), n = block->count, *next;
+  looped->columns = allocate(elements + n + 1 + looped->place_count, sizeof *looped->columns);
+  next = looped->columns;
+  for (size_t k = 0; k < elements; k++) *next++ = block->column[k];
+  for (size_t i = 0, k = 0; i <= n && block->constraint_count > 0; i++) {
+    while (k < looped->place_count && looped->places[k] < block->start[i]) k++;
+    *next++ = k;
+  }
+  for (size_t k = 0; k < looped->place_count && block->constraint_count > 0; k++)
+    *next++ = block->column[looped->places[k]];
+  looped->column_count = (size_t)(next - looped->columns);
+}
+
+static size_t saddle_mass(const struct LoopedBlock *looped) {
+  const struct InertiaBlock *block = looped->block;
+  return SADDLE_MASS(factor_elements(block), looped->place_count, block->count, block->constraint_count);
+}
+
+static size_t mass_count_of(const struct LoopedBlock *looped) {
+  const struct InertiaBlock *block = looped->block;
+  if (block->constraint_count == 0) return factor_elements(block);
+  return saddle_mass(looped) + (block->force_count > 0 ? NONSYMMETRIC_MASS(block->count, block->force_count) : 0);
+}
+
+static struct LoopedBlock looped_block(const struct InertiaBlock *block, size_t first_mass, size_t first_right_side) {
+  struct LoopedBlock looped = {.block = block, .first_mass = first_mass, .first_right_side = first_right_side};
+  find_places(&looped);
+  find_columns(&looped);
+  looped.mass_count = mass_count_of(&looped);
+  return looped;
 }
 
 struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
@@ -30,9 +71,9 @@ struct LoopedBlocks looped_blocks_of(const struct Equations *equations) {
     const struct InertiaBlock *block = &inertia->blocks[i];
     if (block->is_unrolled) continue;
     bool is_saddle = block->constraint_count > 0;
-    size_t count = mass_count_of(block);
-    blocks.items[blocks.count++] = (struct LoopedBlock){block, blocks.mass_count, blocks.right_side_count, count};
-    blocks.mass_count += count;
+    struct LoopedBlock looped = looped_block(block, blocks.mass_count, blocks.right_side_count);
+    blocks.items[blocks.count++] = looped;
+    blocks.mass_count += looped.mass_count;
     blocks.right_side_count += is_saddle ? SADDLE_RIGHT_SIDE(block->count) : block->count;
   }
   return blocks;
@@ -91,17 +132,27 @@ size_t block_operations(const struct InertiaBlock *block) {
   return operations;
 }
 
+Slot slot_of_diagonal(const struct LoopedBlock *looped, size_t row) {
+  size_t k = 0;
+  while (looped->places[k] + 1 != looped->block->start[row + 1]) k++;
+  return slot_at(SPACE_MASS, looped->given + k);
+}
+
+size_t first_nonsymmetric(const struct LoopedBlock *looped) {
+  return looped->first_mass + saddle_mass(looped);
+}
+
 void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *looped) {
   const struct InertiaBlock *block = looped->block;
-  for (size_t i = 0; i < block->start[block->count]; i++)
-    generator_copy(generator, slot_at(SPACE_MASS, looped->first_mass + i), block->mass[i]);
-  size_t first = looped->first_mass + SADDLE_MASS(block->start[block->count], block->count, block->constraint_count);
+  for (size_t i = 0; i < looped->place_count; i++)
+    generator_copy(generator, slot_at(SPACE_MASS, looped->given + i), block->mass[looped->places[i]]);
   for (size_t i = 0; i < block->force_count * block->count; i++)
-    generator_copy(generator, slot_at(SPACE_MASS, first + i), block->nonsymmetric[i]);
+    generator_copy(generator, slot_at(SPACE_MASS, first_nonsymmetric(looped) + i), block->nonsymmetric[i]);
 }
 
 void append_factor(struct CodeGenerator *generator, const struct LoopedBlocks *blocks, size_t number) {
   ir_append(generator->ir, FACTOR, (Slot)number, 0, 0, 0);
+  generator->ir->spaces |= 1u << SPACE_MASS; /* of the factors; K may have no elements */
   generator->ir->operation_count += block_operations(blocks->items[number].block);
 }
 

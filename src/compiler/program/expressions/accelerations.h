@@ -8,7 +8,9 @@
 struct LoopedBlock {
   const struct InertiaBlock *block;
   size_t first_mass, first_right_side;
-  size_t mass_count; /* length of its range in SPACE_MASS */
+  size_t mass_count;                  /* length of its range in SPACE_MASS */
+  size_t *columns, column_count;      /* column[] of ldlt.h or saddle.h */
+  size_t *places, place_count, given; /* of the elements of K: their places among those of L; first one in SPACE_MASS */
 };
 
 /* The blocks of K that are factored at run time. */
@@ -49,6 +51,12 @@ void define_solutions(struct CodeGenerator *generator, const struct LoopedBlocks
  */
 void define_unknowns(struct CodeGenerator *generator, const struct Equations *equations,
                      const struct LoopedBlocks *blocks, const Node *symbol);
+
+/* Returns where K_ii of a row of the block is before the factorization. */
+Slot slot_of_diagonal(const struct LoopedBlock *looped, size_t row);
+
+/* Returns the first element of the block's nonsymmetric columns in SPACE_MASS. */
+size_t first_nonsymmetric(const struct LoopedBlock *looped);
 
 /* Copies the elements of the block, which must be computed, to SPACE_MASS. */
 void append_masses(struct CodeGenerator *generator, const struct LoopedBlock *looped);
