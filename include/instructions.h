@@ -3,11 +3,12 @@
  * as tables of numbers for large ones, which instructions.c interprets.
  *
  * A table is a sequence of runs. A run is an opcode, the number of its instructions, and the spaces of their operands;
- * for CALL and CALL_OF_TWO the index of the function follows. Then come the operands of each instruction, the result
- * first. The opcode END ends the table. An operand is an index in its space; in rows of series it counts coefficients.
+ * for CALL and CALL_OF_TWO the index of the function follows. The results are equally spaced: the first one comes, and
+ * the difference to the next. Then come the operands of each instruction. The opcode END ends the table. Results and
+ * operands are indices in their spaces; in rows of series these count coefficients.
  *
- * SPACED, in the number of instructions, marks a run whose instructions have equally spaced operands. Each operand is an
- * index and the difference to that of the next instruction.
+ * SPACED, in the number of instructions, marks a run whose operands are equally spaced too. Of each the first one comes,
+ * and the difference to the next.
  *
  * SKIP has the number of words of its region in place of that of instructions. Then come its operand and the region,
  * which is a sequence of runs.

@@ -1,7 +1,6 @@
 #include "instructions.h"
 
 #include <math.h>
-#include <string.h>
 
 #include "ldlt.h"
 
@@ -69,17 +68,20 @@ enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
  * operands, in their spaces. In series they are coefficients k; ROW_R and the like are whole rows.
  */
 #define EACH(size, ...)                                                                                                \
+  result = code[0];                                                                                                    \
+  next_result = code[1];                                                                                               \
+  code += 2;                                                                                                           \
   if (is_spaced) {                                                                                                     \
-    uint32_t index[] = {WORD(0, size, 0), WORD(1, size, 2), WORD(2, size, 4), WORD(3, size, 6)};                       \
-    const uint32_t next[] = {WORD(0, size, 1), WORD(1, size, 3), WORD(2, size, 5), WORD(3, size, 7)};                  \
+    uint32_t index[] = {result, WORD(1, size, 0), WORD(2, size, 2), WORD(3, size, 4)};                                 \
+    const uint32_t next[] = {next_result, WORD(1, size, 1), WORD(2, size, 3), WORD(3, size, 5)};                       \
     for (; count > 0; count--) {                                                                                       \
       __VA_ARGS__;                                                                                                     \
       for (int j = 0; j < (size); j++) index[j] += next[j];                                                            \
     }                                                                                                                  \
-    code += 2 * (size);                                                                                                \
+    code += 2 * (size)-2;                                                                                              \
   } else {                                                                                                             \
-    for (; count > 0; count--, code += (size)) {                                                                       \
-      const uint32_t index[] = {WORD(0, size, 0), WORD(1, size, 1), WORD(2, size, 2), WORD(3, size, 3)};               \
+    for (; count > 0; count--, code += (size)-1, result += next_result) {                                              \
+      const uint32_t index[] = {result, WORD(1, size, 0), WORD(2, size, 1), WORD(3, size, 2)};                         \
       __VA_ARGS__;                                                                                                     \
     }                                                                                                                  \
   }                                                                                                                    \
@@ -99,32 +101,18 @@ static inline uint32_t space_of_operand(uint32_t spaces, int number) {
   return spaces >> number * SPACE_BITS & SPACE_MASK;
 }
 
-/* Sets count neighbours to one value; most are elements of K that are 0. */
-static void fill_neighbours(Real *first, uint32_t count, Real value) {
-  Condition is_other = value != 0.0;
-  if (!ANYWHERE(is_other)) memset(first, 0, count * sizeof *first);
-  else
-    for (uint32_t i = 0; i < count; i++) first[i] = value;
-}
-
 int instructions_run(const struct Frame *frame, const uint32_t *code) {
   Real *const *base = frame->base;
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return 0;
     const bool is_spaced = (code[1] & SPACED) != 0;
-    uint32_t count = code[1] & ~SPACED, spaces = code[2];
+    uint32_t count = code[1] & ~SPACED, spaces = code[2], result, next_result;
     Real *r = base[space_of_operand(spaces, 0)];
     const Real *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
     code += 3;
     switch (opcode) {
-    case COPY:
-      if (is_spaced && code[1] == 1 && code[3] == 0) {
-        fill_neighbours(r + code[0], count, a[code[2]]);
-        code += 4;
-        break;
-      }
-      EACH(2, R = A);
+    case COPY: EACH(2, R = A);
     case FIRST_SLOPE: EACH(2, R = (&A)[1]);
     case SUM: EACH(3, R = A + B);
     case DIFFERENCE: EACH(3, R = A - B);
@@ -154,12 +142,7 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
     case CHECK_POSITIVE: EACH(2, REQUIRE(A > 0.0, (int)index[0]));
     case CHECK_PIVOT: EACH(3, REQUIRE(A > 1e-14 * B, (int)index[0]));
     case CHECK_DIAGONAL: EACH(3, REQUIRE(A > 1e-28 * B, (int)index[0]));
-    case FACTOR:
-      for (; count > 0; count--) {
-        int singular = factor(frame, *code++);
-        if (singular != 0) return singular;
-      }
-      break;
+    case FACTOR: EACH(1, int singular = factor(frame, index[0]); if (singular != 0) return singular);
     case SOLVE: EACH(1, solve(frame, index[0]));
     case LEAST_FORCES: EACH(1, take_least_forces(frame, index[0]));
     case SKIP: code += ANYWHERE(a[code[0]] > 0.0) ? 1 : 1 + count; break;
@@ -174,7 +157,7 @@ void instructions_run_order(const struct Frame *frame, const uint32_t *code, int
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return;
     const bool is_spaced = (code[1] & SPACED) != 0;
-    uint32_t count = code[1] & ~SPACED, spaces = code[2];
+    uint32_t count = code[1] & ~SPACED, spaces = code[2], result, next_result;
     const uint32_t space_r = space_of_operand(spaces, 0), space_a = space_of_operand(spaces, 1);
     const uint32_t space_b = space_of_operand(spaces, 2), space_c = space_of_operand(spaces, 3);
     Real *const row_r = base[space_r], *const r = row_r + (space_r >= SPACE_ROW ? k : 0);

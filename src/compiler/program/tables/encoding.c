@@ -150,47 +150,54 @@ static void append_header(struct WordList *words, const struct Encoding *encodin
     append_word(words, (uint32_t)encoding->function[instruction->function] - 1);
 }
 
-/* Returns the number of instructions from the first on, up to count, whose words are equally spaced. */
-static size_t spaced_count(const struct Encoding *encoding, const struct Instruction *instructions, size_t count) {
+/* Returns the number of instructions from the first on, up to count, whose first words are equally spaced. */
+static size_t spaced_count(const struct Encoding *encoding, const struct Instruction *instructions, size_t count,
+                           int words) {
   size_t length = count < 2 ? count : 2;
-  int arity = opcode_arity(instructions->opcode);
   for (; length >= 2 && length < count; length++)
-    for (int j = 0; j <= arity; j++)
+    for (int j = 0; j < words; j++)
       if (word_of(encoding, &instructions[length], j) - word_of(encoding, &instructions[length - 1], j) !=
           word_of(encoding, &instructions[1], j) - word_of(encoding, &instructions[0], j))
         return length;
   return length;
 }
 
-/* Appends a run with all words of its instructions. */
-static void append_listed(struct WordList *words, const struct Encoding *encoding,
-                          const struct Instruction *instructions, size_t count) {
-  if (count == 0) return;
-  append_header(words, encoding, instructions, count, false);
-  for (size_t i = 0; i < count; i++)
-    for (int j = 0; j <= opcode_arity(instructions->opcode); j++)
-      append_word(words, word_of(encoding, &instructions[i], j));
+/* Appends a word of the first of count instructions, and its difference to that of the next. */
+static void append_spaced_word(struct WordList *words, const struct Encoding *encoding,
+                               const struct Instruction *instructions, size_t count, int number) {
+  uint32_t first = word_of(encoding, &instructions[0], number);
+  append_word(words, first);
+  append_word(words, count > 1 ? word_of(encoding, &instructions[1], number) - first : 0);
 }
 
-/* Appends a run of equally spaced instructions: the words of the first, each with its difference to the next. */
+/* Appends instructions whose operands are not equally spaced, as runs whose results are. */
+static void append_listed(struct WordList *words, const struct Encoding *encoding,
+                          const struct Instruction *instructions, size_t count) {
+  for (size_t first = 0, length; first < count; first += length) {
+    length = spaced_count(encoding, instructions + first, count - first, 1);
+    append_header(words, encoding, instructions, length, false);
+    append_spaced_word(words, encoding, instructions + first, length, 0);
+    for (size_t i = first; i < first + length; i++)
+      for (int j = 1; j <= opcode_arity(instructions->opcode); j++)
+        append_word(words, word_of(encoding, &instructions[i], j));
+  }
+}
+
+/* Appends a run of instructions whose results and operands are equally spaced. */
 static void append_spaced(struct WordList *words, const struct Encoding *encoding,
                           const struct Instruction *instructions, size_t count) {
   append_header(words, encoding, instructions, count, true);
-  for (int j = 0; j <= opcode_arity(instructions->opcode); j++) {
-    uint32_t first = word_of(encoding, &instructions[0], j);
-    append_word(words, first);
-    append_word(words, word_of(encoding, &instructions[1], j) - first);
-  }
+  for (int j = 0; j <= opcode_arity(instructions->opcode); j++)
+    append_spaced_word(words, encoding, instructions, count, j);
 }
 
 /* Appends the instructions of one run, as several where many are equally spaced. */
 static void append_run(struct WordList *words, const struct Encoding *encoding, const struct Instruction *instructions,
                        size_t count) {
   enum { FEWEST_SPACED = 6 }; /* a header and differences take as many words as some 4 instructions */
-  bool may_return = !opcode_has_result(instructions->opcode);
   size_t listed = 0;
-  for (size_t i = 0, length; i < count && !may_return; i += length) {
-    length = spaced_count(encoding, instructions + i, count - i);
+  for (size_t i = 0, length; i < count; i += length) {
+    length = spaced_count(encoding, instructions + i, count - i, opcode_arity(instructions->opcode) + 1);
     if (length < FEWEST_SPACED) {
       length = 1;
       continue;
