@@ -24,6 +24,7 @@
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/resting_forces.h"
+#include "nonsmooth/contacts/tolerances.h"
 #include "evaluation/services.h"
 
 /*
@@ -376,7 +377,7 @@ static void report_others(const struct Resolution *resolution, const struct Rest
  */
 static bool any_begins_to_slide(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  double slowest = resting_speed(resolution);
+  double slowest = tolerances_of(resolution).rest;
   bool begins = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
     if (friction_sticks(resolution, i) || !(sliding_speed(resolution, i) <= slowest)) continue;

@@ -22,6 +22,7 @@
 #include "nonsmooth/contacts/load_shares.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
+#include "nonsmooth/contacts/tolerances.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "nonsmooth/continuity.h"
@@ -36,15 +37,6 @@ enum { IMPACT_LIMIT = 1000, PLASTIC_LIMIT = 100, LIFT_LIMIT = 20 };
 
 /* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
 static const double equal_share = 1e-9;
-/*
- * Penetration that is accepted at the start and after an event sets coordinates, in units of the gap. Relative to its
- * scale, a fixed coordinate may be moved by as much.
- */
-static const double largest_penetration = 1e-9;
-
-/* Largest penetration by start values with four digits, as a share of the largest coordinate. */
-static const double rounded_start = 1e-4;
-
 /*
  * A negative gap of at most this number of rounding error bounds is not located again, since the search allows
  * FLOOR_IN_ERROR_BOUND.
@@ -202,9 +194,6 @@ static const char *report_singular_impact(const struct Resolution *resolution, s
   return no_impact;
 }
 
-/* Largest error of an importer's integrator in one step, in units of the largest coordinate. */
-static const double largest_step_error = 1e-4;
-
 /*
  * True if the bounce is lower than the error of the importer's first step after the impact. The importer would then
  * find the contact penetrated while it still opens, after this impact and each following one.
@@ -216,8 +205,7 @@ static bool is_overtaken(const struct Resolution *resolution, size_t contact) {
   if (resolution->occasion != IN_EXCHANGE || has_jumped || !(value[CONTACT_GAP] < -error_bound[CONTACT_GAP]))
     return false;
   double height = 0.5 * value[CONTACT_RATE] * value[CONTACT_RATE] / -value[CONTACT_ACCELERATION];
-  return value[CONTACT_RATE] > error_bound[CONTACT_RATE] &&
-         height <= largest_step_error * largest_scale(resolution->state, 0);
+  return value[CONTACT_RATE] > error_bound[CONTACT_RATE] && height <= tolerances_of(resolution).rounded;
 }
 
 /*
@@ -334,17 +322,12 @@ static const char *let_rest(struct Resolution *resolution) {
   return let_stopped_slip(resolution) ? NULL : report_rest(resolution);
 }
 
-/* Returns the gap above which a closed contact counts as moved apart; larger for importers, whose states drift more. */
-static double largest_drift(const struct Resolution *resolution) {
-  return (resolution->occasion == IN_EXCHANGE ? 1e-3 : 1e-6) * largest_scale(resolution->state, 0);
-}
-
 /* Opens closed contacts that were moved apart. True if any. */
 static bool open_lifted(struct Resolution *resolution) {
+  double drift = tolerances_of(resolution).drift;
   bool opens = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
-    if (!contact_is_closed(resolution, i) || contact_value(resolution, i, CONTACT_GAP) <= largest_drift(resolution))
-      continue;
+    if (!contact_is_closed(resolution, i) || contact_value(resolution, i, CONTACT_GAP) <= drift) continue;
     set_contact(resolution, i, false);
     opens = true;
   }
@@ -354,11 +337,11 @@ static bool open_lifted(struct Resolution *resolution) {
 /* Opens closed contacts whose gap opens faster than errors, at a switch such as an edge or by an event. True if any. */
 static bool open_parting(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  double drift = continuity_allowed_share(resolution) * largest_scale(resolution->state, lagrangian.coordinate_count);
+  double kink = tolerances_of(resolution).kink;
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t slot = contact_slot(switches, i, CONTACT_RATE);
-    double rate = resolution->value[slot], least = resolution->thrown ? resolution->error_bound[slot] : drift;
+    double rate = resolution->value[slot], least = resolution->thrown ? resolution->error_bound[slot] : kink;
     if (!contact_is_closed(resolution, i) || !(rate > least)) continue;
     set_contact(resolution, i, false);
     resolution->was_opened[i] = 1.0;
@@ -372,7 +355,7 @@ static bool part(struct Resolution *resolution) {
   open_lifted(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = contact_value(resolution, i, CONTACT_GAP);
-    if (contact_is_closed(resolution, i) || gap >= -largest_drift(resolution)) continue;
+    if (contact_is_closed(resolution, i) || gap >= -tolerances_of(resolution).drift) continue;
     log_message(
         resolution->instance, STATUS_DISCARD,
         "time %g: after a parameter, an input or a state was set, the contact '%s' is penetrated: its gap is %g; "
@@ -393,7 +376,7 @@ static bool has_to_lift(const struct Resolution *resolution, size_t contact) {
   size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
   const double *value = resolution->value, *error_bound = resolution->error_bound;
   if (contact_is_closed(resolution, contact) || !(value[gap] < -error_bound[gap])) return false;
-  if (!(value[gap] >= -largest_drift(resolution))) return false;
+  if (!(value[gap] >= -tolerances_of(resolution).drift)) return false;
   bool has_stopped = resolution->jumped && value[rate] <= error_bound[rate];
   bool is_stuck = is_hit(resolution, contact_indicator(resolution->switches, contact)) && value[rate] >= 0.0;
   bool comes_again = (has_stopped || is_stuck) && value[gap] < -found_again * error_bound[gap];
@@ -421,7 +404,7 @@ static bool lift(struct Resolution *resolution, bool *lifts) {
 static size_t find_moved_fixed(const struct Resolution *resolution) {
   const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
   size_t found = lagrangian.coordinate_count;
-  double most = largest_penetration;
+  double most = tolerances_of(resolution).penetration; /* here in units of its scale */
   for (size_t i = 0; i < lagrangian.coordinate_count && is_fixed != NULL; i++) {
     double move = fabs(resolution->correction[i]) / scale_of(resolution->state, i);
     if (!is_fixed[i] || !(move > most)) continue;
@@ -441,7 +424,8 @@ static bool undo_move_of_fixed(struct Resolution *resolution) {
 /* True if the penetration of a contact may come from rounded start values. */
 static bool is_rounded(const struct Resolution *resolution, size_t contact) {
   double gap = contact_value(resolution, contact, CONTACT_GAP);
-  return gap < -largest_penetration && gap >= -rounded_start * largest_scale(resolution->state, 0);
+  const struct Tolerances tolerances = tolerances_of(resolution);
+  return gap < -tolerances.penetration && gap >= -tolerances.rounded;
 }
 
 /*
@@ -553,7 +537,8 @@ static const char *check_gaps(const struct Resolution *resolution) {
   const char *problem = check_values(resolution);
   if (problem != NULL) return problem;
   bool starts = resolution->occasion == AT_START, moved = resolution->moved;
-  double allowed = starts || moved ? largest_penetration : largest_drift(resolution);
+  const struct Tolerances tolerances = tolerances_of(resolution);
+  double allowed = starts || moved ? tolerances.penetration : tolerances.drift;
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = contact_value(resolution, i, CONTACT_GAP);
     if (gap >= -allowed) continue;

@@ -17,6 +17,7 @@
 #include "nonsmooth/contacts/jams.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
+#include "nonsmooth/contacts/tolerances.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "nonsmooth/continuity.h"
@@ -66,8 +67,7 @@ static void take_direction(const struct Resolution *resolution, size_t friction,
 
 /* True if a velocity is larger than a kink of the constraints or an error of the method can cause. */
 static bool is_off_zero(const struct Resolution *resolution, double velocity) {
-  double scale = largest_scale(resolution->state, lagrangian.coordinate_count);
-  return fabs(velocity) > continuity_allowed_share(resolution) * scale;
+  return fabs(velocity) > tolerances_of(resolution).kink;
 }
 
 static struct FrictionState friction_state(const struct Resolution *resolution, size_t friction) {
@@ -301,7 +301,7 @@ static bool leaves_rest(const struct Resolution *resolution, size_t friction) {
  */
 bool frictions_report(struct Resolution *resolution, bool *again) {
   const struct SwitchTable *switches = resolution->switches;
-  double slowest = resting_speed(resolution);
+  double slowest = tolerances_of(resolution).rest;
   *again = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionMetadata *metadata = &switches->frictions[i];
@@ -425,7 +425,7 @@ bool frictions_explain_jam(struct Resolution *resolution, size_t branch) {
     constraint = pair % lagrangian.constraints.count;
     jams = mode_of(resolution, switches->frictions[friction].mode) != 0.0 &&
            follows_from(resolution, friction, branch, constraint) &&
-           sliding_speed(resolution, friction) > resting_speed(resolution);
+           sliding_speed(resolution, friction) > tolerances_of(resolution).rest;
   }
   if (!jams || (branch == switches->branch_count && !is_freed_by_sticking(resolution, friction))) return false;
   log_message(resolution->instance, resolution_status(resolution),

@@ -24,6 +24,7 @@
 #include "nonsmooth/contacts/complementarity.h"
 #include "nonsmooth/contacts/contact_forces.h"
 #include "nonsmooth/contacts/planes.h"
+#include "nonsmooth/contacts/tolerances.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -39,9 +40,6 @@ static const double least_gain = 1e-13;
  * energies.
  */
 static const double differing_share = 1e-8;
-
-/* Impacts at rates below this share of the largest velocity are rounding errors at rest. */
-static const double resting_share = 1e-9;
 
 /* Proximal terms, added to the diagonal of the scaled Delassus matrix, in the order in which they are tried. */
 static const double regularizations[] = {1e-8, 1e-6};
@@ -323,7 +321,7 @@ static void report_impact(const struct Resolution *resolution, const struct Cont
 static bool is_hit_at_rest(const struct Resolution *resolution, const struct ContactImpulses *impulses) {
   double fastest = 0.0;
   for (size_t i = 0; i < impulses->count; i++) fastest = fmax(fastest, fabs(impulses->rate[i]));
-  return fastest <= resting_share * largest_scale(resolution->state, lagrangian.coordinate_count);
+  return fastest <= tolerances_of(resolution).rest;
 }
 
 /* Warns at most once an instance that the impact has several outcomes. */

@@ -13,13 +13,8 @@
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/resting_forces.h"
+#include "nonsmooth/contacts/tolerances.h"
 #include "evaluation/evaluate.h"
-
-/* Returns the largest gap that the projection leaves at a contact that touches; larger for importers. */
-static double narrowest(const struct Resolution *resolution) {
-  double share = resolution->occasion == IN_EXCHANGE ? 1e-9 : 1e-12;
-  return share * largest_scale(resolution->state, 0);
-}
 
 /* True if no friction on the contact slides. */
 static bool sticks_sideways(const struct Resolution *resolution, size_t contact, double slowest) {
@@ -32,13 +27,13 @@ static bool sticks_sideways(const struct Resolution *resolution, size_t contact,
 
 /* Sets takes_part to 1 for open contacts that touch at rest, else 0. True if there are any beside a closed contact. */
 static bool find_idle(struct Resolution *resolution) {
-  double narrow = narrowest(resolution), slowest = resting_speed(resolution);
+  const struct Tolerances tolerances = tolerances_of(resolution);
   bool has_closed = false, is_idle = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
     bool is_closed = contact_is_closed(resolution, i);
-    bool touches = fabs(contact_value(resolution, i, CONTACT_GAP)) <= narrow;
-    bool is_still = fabs(contact_value(resolution, i, CONTACT_RATE)) <= slowest;
-    bool rests = !is_closed && touches && is_still && sticks_sideways(resolution, i, slowest);
+    bool touches = fabs(contact_value(resolution, i, CONTACT_GAP)) <= tolerances.touching;
+    bool is_still = fabs(contact_value(resolution, i, CONTACT_RATE)) <= tolerances.rest;
+    bool rests = !is_closed && touches && is_still && sticks_sideways(resolution, i, tolerances.rest);
     resolution->takes_part[i] = rests ? 1.0 : 0.0;
     has_closed |= is_closed;
     is_idle |= rests;

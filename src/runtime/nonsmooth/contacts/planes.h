@@ -6,14 +6,6 @@
 #include "evaluation/evaluate.h"
 #include "nonsmooth/resolution.h"
 
-/*
- * Returns the speed up to which a friction counts as at rest; larger for importers, which keep constraints less well.
- */
-static inline double resting_speed(const struct Resolution *resolution) {
-  double share = resolution->occasion == IN_EXCHANGE ? 1e-6 : 1e-9;
-  return share * largest_scale(resolution->state, lagrangian.coordinate_count);
-}
-
 /* Returns the mode of a friction in a plane. */
 static inline enum PlaneMode plane_mode(const struct Resolution *resolution, const struct PlaneMetadata *plane) {
   return (enum PlaneMode)mode_of(resolution, resolution->switches->frictions[plane->along].mode);

@@ -1,0 +1,16 @@
+#include "nonsmooth/contacts/tolerances.h"
+
+#include "evaluation/evaluate.h"
+#include "nonsmooth/continuity.h"
+
+struct Tolerances tolerances_of(const struct Resolution *resolution) {
+  bool is_exchange = resolution->occasion == IN_EXCHANGE;
+  double length = largest_scale(resolution->state, 0);
+  double velocity = largest_scale(resolution->state, lagrangian.coordinate_count);
+  return (struct Tolerances){.touching = (is_exchange ? 1e-9 : 1e-12) * length,
+                             .penetration = 1e-9,
+                             .drift = (is_exchange ? 1e-3 : 1e-6) * length,
+                             .rounded = 1e-4 * length,
+                             .rest = (is_exchange ? 1e-6 : 1e-9) * velocity,
+                             .kink = continuity_allowed_share(resolution) * velocity};
+}
