@@ -181,8 +181,8 @@ static void log_crushed(const struct Resolution *resolution, const struct Contac
   while (impulses->member[row] != contact) row++;
   log_message(
       resolution->instance, resolution_status(resolution),
-      "time %g: the contacts '%s' and '%s' crush a body between them: prescribed motions close one of them, and no "
-      "force keeps both open; expected prescribed motions that leave room, or a force or a spring in place of one",
+      "time %g: the contacts '%s' and '%s' crush a body between them: prescribed motions, or far larger masses, "
+      "close one of them; expected motions that leave room, or a force or a spring in place of one contact",
       resolution->time, contacts[contact].name, contacts[impulses->member[find_opponent(impulses, row)]].name);
 }
 

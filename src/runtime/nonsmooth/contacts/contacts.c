@@ -33,7 +33,7 @@
  * IMPACT_LIMIT: impacts of an event that are taken one after another. PLASTIC_LIMIT: further ones, of all contacts that
  * touch. LIFT_LIMIT: projections of penetrated contacts, in an event and at the start.
  */
-enum { IMPACT_LIMIT = 1000, PLASTIC_LIMIT = 100, LIFT_LIMIT = 20 };
+enum { IMPACT_LIMIT = 100000, PLASTIC_LIMIT = 100, LIFT_LIMIT = 20 };
 
 /* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
 static const double equal_share = 1e-9;
@@ -56,6 +56,17 @@ static const char penetrated[] = "a contact is penetrated";
 static const char no_impact[] = "an impact of a contact has no solution";
 
 /*
+ * True if the rate of a contact is an error of the solver. No velocity has jumped at the event of another element, and
+ * the contact was closed up to it, or touches without a visible rate.
+ */
+static bool is_error_of_solver(const struct Resolution *resolution, size_t contact) {
+  if (resolution->occasion != AT_EVENT || resolution->jumped || may_change_gaps(resolution)) return false;
+  bool is_other = !is_hit(resolution, contact_indicator(resolution->switches, contact));
+  return resolution->first_mode[contact] != 0.0 ||
+         (is_other && -contact_value(resolution, contact, CONTACT_RATE) <= tolerances_of(resolution).rest);
+}
+
+/*
  * Returns the touching contact that closes fastest; contact_count for none. Rates within rounding count only for the
  * contact whose zero was located, before its first impact.
  */
@@ -68,7 +79,9 @@ static size_t find_impact(const struct Resolution *resolution) {
     bool is_hit_first =
         is_hit(resolution, contact_indicator(resolution->switches, i)) && is_open && resolution->impacts == 0;
     bool closes = resolution->value[rate] < (is_hit_first ? 0.0 : -resolution->error_bound[rate]);
-    if (!closes || !is_touching(resolution, i) || resolution->value[rate] >= fastest) continue;
+    if (!closes || is_error_of_solver(resolution, i) || !is_touching(resolution, i) ||
+        resolution->value[rate] >= fastest)
+      continue;
     fastest = resolution->value[rate];
     found = i;
   }
@@ -149,6 +162,14 @@ static void let_all_slide(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++) set_friction(resolution, i, 1.0);
 }
 
+/* Evaluates the values after velocities have changed, with the last accelerations. False if that fails. */
+static bool evaluate_velocities(struct Resolution *resolution) {
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  resolution->switches->switching_values(&point, resolution->acceleration, resolution->value);
+  return true;
+}
+
 /*
  * Lets frictions in planes that do not stick, and have stopped, slip along their last direction. False if values cannot
  * be evaluated.
@@ -156,9 +177,7 @@ static void let_all_slide(struct Resolution *resolution) {
 static bool let_stopped_slip(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   if (switches->plane_count == 0) return true;
-  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
-  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
-  switches->switching_values(&point, resolution->acceleration, resolution->value);
+  if (!evaluate_velocities(resolution)) return false;
   for (size_t i = 0; i < switches->plane_count; i++) {
     size_t along = switches->planes[i].along;
     if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > least_speed))
@@ -170,6 +189,11 @@ static bool let_stopped_slip(struct Resolution *resolution) {
 /* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
 static bool take_impact(struct Resolution *resolution, size_t contact) {
   bool passes = passes_on(resolution, contact);
+  if (resolution->impacts == IMPACT_LIMIT)
+    log_message(resolution->instance, STATUS_WARNING,
+                "time %g: after %d impacts at one time, the last one of '%s', contacts that touch lose all energy of "
+                "their impacts",
+                resolution->time, IMPACT_LIMIT, resolution->switches->contacts[contact].name);
   if (!choose_hit(resolution, contact, passes)) return false;
   resolution_keep_modes(resolution);
   let_all_slide(resolution);
@@ -253,6 +277,16 @@ static void let_stick(struct Resolution *resolution, size_t contact) {
   }
 }
 
+/* Lets frictions along lines stick that the projection of the velocities has stopped. False if values do not exist. */
+static bool let_stopped_stick(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (switches->friction_count == 0) return true;
+  if (!evaluate_velocities(resolution)) return false;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (contact_is_closed(resolution, i)) let_stick(resolution, i);
+  return true;
+}
+
 /*
  * True if a touching contact stays with others that come to rest. Rates of a body that comes to lie flat differ by
  * rounding errors. The last contact does not accelerate by itself, but shares the load. was_opened is ignored: a
@@ -319,7 +353,8 @@ static const char *let_rest(struct Resolution *resolution) {
     contact_forces_report_fixed(resolution, fixed);
     return no_impact;
   }
-  return let_stopped_slip(resolution) ? NULL : report_rest(resolution);
+  bool is_done = resolution->switches->plane_count > 0 ? let_stopped_slip(resolution) : let_stopped_stick(resolution);
+  return is_done ? NULL : report_rest(resolution);
 }
 
 /* Opens closed contacts that were moved apart. True if any. */

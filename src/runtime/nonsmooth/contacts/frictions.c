@@ -13,6 +13,7 @@
 #include <math.h>
 #include <stdint.h>
 
+#include "detection/indicators.h"
 #include "nonsmooth/contacts/impact_outcomes.h"
 #include "nonsmooth/contacts/jams.h"
 #include "nonsmooth/contacts/planes.h"
@@ -98,13 +99,23 @@ static struct FrictionState friction_state(const struct Resolution *resolution, 
   double error_bound_in_time = 8.0 * DBL_EPSILON * fabs(resolution->time * resolution->largest[slot + FRICTION_RATE]);
   /* After the velocity has reached 0, a remainder counts as a rounding error, until velocities jump. */
   bool is_at_zero = !state.is_first || state.is_hit;
-  state.is_moving = fabs(state.velocity) > state.error_bound + error_bound_in_time && (state.may_jump || !is_at_zero);
+  double rounding = state.error_bound + error_bound_in_time;
+  bool is_faster = fabs(state.velocity) > rounding;
+  /* Without force nothing stops a remainder: only one that the search leaves counts as 0. */
+  if (is_at_zero && !state.may_jump)
+    is_faster = state.has_no_force && fabs(state.velocity) > FLOOR_IN_ERROR_BOUND * rounding;
+  state.is_moving = is_faster;
   return state;
 }
 
-/* Returns the mode of a friction without force, which never sticks. */
+/*
+ * Returns the mode of a friction without force, which never sticks. Its contact may have no force because the friction
+ * sticks, as where the head of a ladder carries its share of the weight. Then that share has the direction.
+ */
 static double mode_without_force(const struct FrictionState *state) {
+  bool has_direction = state->mode == 0.0 && state->force > state->error_bound_of_force;
   double next = state->is_moving                                 ? state->velocity
+                : has_direction                                  ? state->direction
                 : fabs(state->rate) > state->error_bound_of_rate ? state->rate
                 : state->is_hit && state->is_first               ? -state->mode
                                                                  : state->mode;
