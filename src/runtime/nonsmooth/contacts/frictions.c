@@ -18,7 +18,7 @@
 #include "nonsmooth/contacts/jams.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
-#include "nonsmooth/contacts/tolerances.h"
+#include "nonsmooth/tolerances.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "nonsmooth/continuity.h"

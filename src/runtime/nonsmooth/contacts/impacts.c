@@ -24,7 +24,7 @@
 #include "nonsmooth/contacts/complementarity.h"
 #include "nonsmooth/contacts/contact_forces.h"
 #include "nonsmooth/contacts/planes.h"
-#include "nonsmooth/contacts/tolerances.h"
+#include "nonsmooth/tolerances.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"

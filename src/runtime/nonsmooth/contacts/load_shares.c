@@ -13,7 +13,7 @@
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/resting_forces.h"
-#include "nonsmooth/contacts/tolerances.h"
+#include "nonsmooth/tolerances.h"
 #include "evaluation/evaluate.h"
 
 /* True if no friction on the contact slides. */

@@ -1,4 +1,4 @@
-#include "nonsmooth/contacts/tolerances.h"
+#include "nonsmooth/tolerances.h"
 
 #include "evaluation/evaluate.h"
 #include "nonsmooth/continuity.h"
