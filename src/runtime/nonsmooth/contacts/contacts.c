@@ -88,13 +88,23 @@ static size_t find_impact(const struct Resolution *resolution) {
   return found;
 }
 
+/* Returns the largest rate of the contacts that touch, since the start of the event. */
+static double fastest_of_event(const struct Resolution *resolution) {
+  double fastest = 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (is_touching(resolution, i))
+      fastest = fmax(fastest, resolution->largest[contact_slot(resolution->switches, i, CONTACT_RATE)]);
+  return fastest;
+}
+
 /*
- * True if the impact of a contact is taken by itself, and others follow from it. False for one of all that touch: none
- * of them would bounce visibly at this speed, or there were too many impacts.
+ * True if the impact of a contact is taken by itself, and others follow from it. False for one of all that touch. Then
+ * none of them would bounce visibly, or this one has 1e-12 of the largest energy, or there were too many impacts.
  */
 static bool passes_on(const struct Resolution *resolution, size_t contact) {
   double speed = -contact_value(resolution, contact, CONTACT_RATE);
   bool any_bounces = false;
+  if (speed <= unresolved_share * fastest_of_event(resolution)) return false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
     any_bounces |= is_touching(resolution, i) &&
                    !bounce_is_lost(resolution, i, contact_value(resolution, i, CONTACT_RESTITUTION) * speed);
