@@ -6,10 +6,10 @@
  * Numerica 14, 2005). Constraints that depend on others are found by their pivots and left out, with force 0.
  *
  * The pattern of L is that of ldlt.h, with e elements. Without fill-in, K has g elements. column holds the e columns of
- * L, then the n + 1 numbers of start for K, and the g columns of K. With c constraints, m holds SADDLE_MASS(e, g, n, c) numbers: the factors, K,
- * the smallest relative pivot of a constraint, 2 n numbers of workspace, and the null space of J^T, see
- * saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the first n are given and
- * solved for.
+ * L, then the n + 1 numbers of start for K, and the g columns of K. With c constraints, m holds SADDLE_MASS(e, g, n, c)
+ * numbers: the factors, K, the smallest relative pivot of a constraint, 2 n numbers of workspace, and the null space of
+ * J^T, see saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the first n are given
+ * and solved for.
  */
 #ifndef SADDLE_H
 #define SADDLE_H
@@ -34,8 +34,8 @@ enum {
 /*
  * Computes L (below the diagonal) and D (on it) from K. coordinate: positive numbers for rows of M, negative ones for
  * constraints, see above. A constraint may depend on those before it, or its row may be 0, as that of an open contact.
- * It gets the pivot -INFINITY, so that its force is 0; a row of 0 has no elements of L then. Returns 0, or 1 + the first row in which M is not positive
- * definite.
+ * It gets the pivot -INFINITY, so that its force is 0; a row of 0 has no elements of L then. Returns 0, or 1 + the
+ * first row in which M is not positive definite.
  */
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m);
 

@@ -34,13 +34,14 @@ static void find_columns(struct LoopedBlock *looped) {
   looped->columns = allocate(elements + n + 1 + looped->place_count, sizeof *looped->columns);
   next = looped->columns;
   for (size_t k = 0; k < elements; k++) *next++ = block->column[k];
-  for (size_t i = 0, k = 0; i <= n && block->constraint_count > 0; i++) {
+  looped->column_count = elements;
+  if (block->constraint_count == 0) return;
+  for (size_t i = 0, k = 0; i <= n; i++) {
     while (k < looped->place_count && looped->places[k] < block->start[i]) k++;
     *next++ = k;
   }
-  for (size_t k = 0; k < looped->place_count && block->constraint_count > 0; k++)
-    *next++ = block->column[looped->places[k]];
-  looped->column_count = (size_t)(next - looped->columns);
+  for (size_t k = 0; k < looped->place_count; k++) *next++ = block->column[looped->places[k]];
+  looped->column_count += n + 1 + looped->place_count;
 }
 
 static size_t saddle_mass(const struct LoopedBlock *looped) {

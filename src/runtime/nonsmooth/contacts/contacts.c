@@ -43,7 +43,7 @@ static const double equal_share = 1e-9;
  */
 static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
 
-/* Impulses by iteration may leave closing rates below this share of the gap's largest rate in the event. */
+/* Iterations leave closing rates below this share of the largest one in the event; impacts at them have no energy. */
 static const double unresolved_share = 1e-6;
 
 /* Forces below this share of the largest one are rounding errors, where a body begins to tip over an edge. */
