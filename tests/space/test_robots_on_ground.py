@@ -99,18 +99,19 @@ def test_limbs_fall_against_their_stops(start, open_fmu):
 
 
 def test_where_shapes_are():
-    """A cylinder with origin and rpy: its force gives the depths of points on its rims in the ground."""
+    """A cylinder with origin and rpy: its force gives the depths of the lowest points of its rims in the ground."""
     instance = fmu.Instance("Roller", logging=False)
     try:
-        place = {"r.base_z": 0.1, "r.base_qw": math.cos(0.2), "r.base_qx": math.sin(0.2)}
-        instance.initialize(place)
         # By the URDF reference, rotations are about the fixed axes x, y, z.
         own, base = Rotation.from_euler("xyz", [math.pi / 2, 0, 0.3]), Rotation.from_euler("x", 0.4)
-        rims = [[0.2 * math.cos(k * math.pi / 4), 0.2 * math.sin(k * math.pi / 4), end] for k in range(8) for end in (-0.3, 0.3)]
-        heights = 0.1 + base.apply(np.array([0.1, 0, 0.05]) + own.apply(rims))[:, 2]
-        expected = instance.get("r.ground_stiffness") * sum(-height for height in heights if height < 0)
+        circle = np.linspace(0, 2 * math.pi, 10001)
+        rims = [np.transpose([0.2 * np.cos(circle), 0.2 * np.sin(circle), np.full(10001, end)]) for end in (-0.3, 0.3)]
+        heights = [min(base.apply(np.array([0.1, 0, 0.05]) + own.apply(rim))[:, 2]) for rim in rims]
+        height = -min(heights) - 0.005
+        instance.initialize({"r.base_z": height, "r.base_qw": math.cos(0.2), "r.base_qx": math.sin(0.2)})
+        expected = instance.get("r.ground_stiffness") * sum(max(-(height + below), 0) for below in heights)
         assert expected > 0
-        assert instance.get("r.roller_ground1.force") == pytest.approx(expected, rel=1e-9)
+        assert instance.get("r.roller_ground1.force") == pytest.approx(expected, rel=1e-6)
     finally:
         instance.free()
 

@@ -72,7 +72,6 @@ URDF_CASES = {
     "gravity off": ("</robot>", '<gazebo reference="rotor"><turnGravityOff>true</turnGravityOff></gazebo></robot>', QUIET, 7, f"<turnGravityOff> {UNREAD} {IN_SYSTEM}"),
     "friction of Gazebo": ("</robot>", '<gazebo reference="rotor"><mu1>0.3</mu1></gazebo></robot>', 'ground="true" limits="stops"', 7, f"<mu1> {UNREAD} ground_friction of the robot"),
     "undeclared prefix": ('effort="0"', 'drake:acceleration="3" effort="0"/><drake:gear drake:x="1"', QUIET, 5, "<drake:gear> is read without its prefix, which the file does not define; expected xmlns:drake=\"...\" in its first element"),
-    "wheel": ('<link name="stand">', '<link name="stand"><collision><geometry><cylinder radius="0.1" length="0.1"/></geometry></collision>', 'base="floating" ground="true" limits="stops"', 2, "the cylinder of the link 'stand' touches the ground at 8 points of each rim"),
 }  # fmt: skip
 
 

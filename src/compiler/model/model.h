@@ -133,6 +133,7 @@ struct ContactShape {
   Node radius, length;    /* m; the length of a capsule excludes its round ends */
   struct Vector size;     /* m, of a box or ellipsoid along its axes */
   bool is_flat[3];        /* the box has no size along the axis in the file: a side of 0, or none */
+  bool stands;            /* a cylinder touches planes with points of its ends, too; a wheel with its rims alone */
   struct Mesh *mesh;      /* NULL for other types */
   bool is_hidden;         /* has contacts, but is not drawn */
   char *color;            /* such as "#ff8000", or "#ff800080" at half opacity; NULL for the page's choice */

@@ -1,6 +1,7 @@
 #include "robots/robot_shapes.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/memory.h"
 #include "model/kinematics.h"
@@ -118,11 +119,22 @@ static xmlNodePtr write_shape(struct Writer *writer, const struct RobotLink *lin
   return shape;
 }
 
+/* True for a cylinder about the axis of a joint that turns without limits: a wheel, which rolls and does not stand. */
+static bool is_wheel(const struct RobotLink *link, const struct Collision *collision) {
+  const struct RobotJoint *joint = link->joint;
+  if (strcmp(collision->type, "cylinder") != 0 || joint == NULL) return false;
+  if (joint->type != CONTINUOUS && (joint->type != REVOLUTE || !isnan(joint->lower))) return false;
+  double along = 0.0;
+  for (int i = 0; i < 3; i++) along += collision->placement.rotation.at[i][2] * joint->axis[i];
+  return fabs(along) > 1.0 - 1e-6;
+}
+
 void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves) {
   for (size_t i = 0; i < link->collision_count; i++) {
     char *name = format_text("%s_collision%zu", link->symbol, i + 1);
     xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
     if (link->visual_count > 0) set_attribute(shape, "drawn", "false");
+    if (is_wheel(link, &link->collisions[i])) set_attribute(shape, "stands", "false");
     if (moves && meets_ground(writer->options, link, &link->collisions[i]))
       write_contact(writer, link, &link->collisions[i], name, i + 1);
   }

@@ -250,27 +250,6 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
                  "effort=\"limited\", or \"unlimited\" if this is meant,", "effort limited");
 }
 
-/* Warns of a cylinder on the ground, which touches with points on its rims and so rolls like an octagon. */
-static void check_rims(const struct Robot *robot, const struct RobotOptions *options,
-                       const struct Diagnostics *diagnostics) {
-  for (size_t i = 0; i < robot->link_count; i++) {
-    const struct RobotLink *link = robot->links[i];
-    for (size_t j = 0; j < link->collision_count; j++) {
-      const struct Collision *shape = &link->collisions[j];
-      if (strcmp(shape->type, "cylinder") != 0 || shape->is_clear || !link_touches_ground(options, link->name) ||
-          !carrier_moves(link, options->floats))
-        continue;
-      report_warning(
-          diagnostics, shape->line,
-          "the cylinder of the link '%s' touches the ground at 8 points of each rim, as an octagon would roll; "
-          "for a wheel, expected a sphere or capsule in its place, or a <joint type=\"rolling\"> in a <system> "
-          "that includes the robot",
-          link->name);
-      return;
-    }
-  }
-}
-
 /* Returns the links that can touch the ground, for messages; "none" without any. */
 static char *standing_links(const struct Robot *robot, const struct RobotOptions *options) {
   const char **names = allocate(robot->link_count + 1, sizeof *names);
@@ -318,7 +297,6 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *given, 
   }
   if (diagnostics->errors == errors) {
     check_limits(robot, options, diagnostics);
-    check_rims(robot, options, diagnostics);
     if (!is_mjcf) find_pairs(robot, options, diagnostics);
   }
   xmlFreeDoc(document);

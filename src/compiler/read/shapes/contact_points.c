@@ -1,7 +1,7 @@
 /*
  * Nearest points in closed form. A shape touches a plane with a fixed list of points: corners of boxes and meshes,
- * points on the rims of cylinders, centres of round ends. An ellipsoid touches it with the point of its support
- * function. Other pairs reduce to two balls, gap = |p1 - p2| - r1 - r2 with the nearest points p1, p2 of their
+ * centres of round ends. An ellipsoid touches it with the point of its support function. A cylinder touches it with the
+ * lowest point of each rim, and stands on fixed points of its ends. Other pairs reduce to two balls, gap = |p1 - p2| - r1 - r2 with the nearest points p1, p2 of their
  * centres, axes or solids. Nearest points follow by clamping coordinates, whose kinks are events. The normal (p1 -
  * p2)/|p1 - p2| is undefined if a centre enters the other solid or axis, so that such deep penetration is not
  * covered.
@@ -14,8 +14,17 @@
 #include "base/memory.h"
 #include "names/piecewise_functions.h"
 
-/* Points on each rim of a cylinder, and the largest number of points of a shape. */
-enum { RIM_POINTS = 8, RIMS_POINTS = 2 * RIM_POINTS, MOST_POINTS = MOST_CORNERS };
+/* Points on which each end of a cylinder stands, both ends, and the largest number of points of a shape. */
+enum { END_POINTS = 8, STANDING_POINTS = 2 * END_POINTS, CYLINDER_ENDS = 2, MOST_POINTS = MOST_CORNERS };
+
+/*
+ * A rim's lowest point has no direction where a cylinder stands upright on the plane. Let y be the square of the sine of
+ * its tilt over that of least_sine. Below y = 1 two functions apply, in units of least_sine times the radius. The rim
+ * reaches below its centre by 3/8 + 3/4 y - y^2/8 + (3/8 + recess) (y - 1)^3. That has the value and two derivatives of
+ * the sine at y = 1, and is above the end at y = 0. The points on which the cylinder stands rise by y^2, and so touch
+ * nothing while it rolls.
+ */
+static const double least_sine = 0.05, recess = 0.1;
 
 /* Two shapes, with the graph and scope for expressions of their contacts. */
 struct ShapePair {
@@ -72,18 +81,23 @@ static void append_corners(struct Graph *graph, struct BallCentres *points, cons
   }
 }
 
-/* Appends points on both rims. The first is on the axis that follows the cylinder's cyclically. */
-static void append_rims(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
+/*
+ * Appends the points on which each end stands, then the centres of both ends. The first point of an end is on the axis
+ * that follows the cylinder's cyclically.
+ */
+static void append_ends(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
   static const double half = 0.70710678118654752440;
-  static const double circle[RIM_POINTS][2] = {{1, 0},  {half, half},   {0, 1},  {-half, half},
+  static const double circle[END_POINTS][2] = {{1, 0},  {half, half},   {0, 1},  {-half, half},
                                                {-1, 0}, {-half, -half}, {0, -1}, {half, -half}};
   int across = (shape->axis + 1) % 3, beside = (shape->axis + 2) % 3;
-  for (int i = 0; i < RIMS_POINTS; i++) {
-    struct Vector point = along_axis(shape, scale(graph, i < RIM_POINTS ? 0.5 : -0.5, shape->length));
-    point.along[across] = scale(graph, circle[i % RIM_POINTS][0], shape->radius);
-    point.along[beside] = scale(graph, circle[i % RIM_POINTS][1], shape->radius);
+  for (int i = 0; i < STANDING_POINTS && shape->stands; i++) {
+    struct Vector point = along_axis(shape, scale(graph, i < END_POINTS ? 0.5 : -0.5, shape->length));
+    point.along[across] = scale(graph, circle[i % END_POINTS][0], shape->radius);
+    point.along[beside] = scale(graph, circle[i % END_POINTS][1], shape->radius);
     append_point(graph, points, shape, point);
   }
+  append_point(graph, points, shape, along_axis(shape, scale(graph, 0.5, shape->length)));
+  append_point(graph, points, shape, along_axis(shape, scale(graph, -0.5, shape->length)));
 }
 
 static void append_mesh_corners(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
@@ -109,7 +123,7 @@ static struct BallCentres points_of(struct Graph *graph, const struct ContactSha
     append_point(graph, &points, shape, along_axis(shape, scale(graph, -0.5, shape->length)));
     break;
   case SHAPE_BOX: append_corners(graph, &points, shape); break;
-  case SHAPE_CYLINDER: append_rims(graph, &points, shape); break;
+  case SHAPE_CYLINDER: append_ends(graph, &points, shape); break;
   case SHAPE_MESH: append_mesh_corners(graph, &points, shape); break;
   default: break;
   }
@@ -153,14 +167,70 @@ static void plane_contacts(const struct ShapePair *pair, struct ContactPoints *c
 }
 
 /*
+ * How far a rim reaches below its centre, and how far the points on which a cylinder stands rise, in radii. The gap is a
+ * function of the normal n, and its gradient by n is the material point that moves with the gap. For both functions that
+ * adds a multiple of the part of n across the axis.
+ */
+struct TiltFunctions {
+  Node reach, reach_gradient, rise, rise_gradient;
+};
+
+static struct TiltFunctions functions_of_tilt(const struct ShapePair *pair, Node squared_sine) {
+  const double square = least_sine * least_sine, bend = 0.375 + recess;
+  struct Graph *graph = pair->graph;
+  Node sine = power_number(graph, squared_sine, 0.5), y = scale(graph, 1.0 / square, squared_sine);
+  Node y_squared = power_number(graph, y, 2.0), before = subtract(graph, y, ONE),
+       before_squared = power_number(graph, before, 2.0);
+  Node reach = add(graph, graph_constant(graph, 0.375), scale(graph, 0.75, y));
+  reach = subtract(graph, reach, scale(graph, 0.125, y_squared));
+  reach = add(graph, reach, scale(graph, bend, multiply(graph, before, before_squared)));
+  Node slope = subtract(graph, graph_constant(graph, 0.75), scale(graph, 0.25, y));
+  slope = add(graph, slope, scale(graph, 3.0 * bend, before_squared));
+  Node excess = subtract(graph, squared_sine, graph_constant(graph, square));
+  Node is_tilted = branch_of(pair->scope, excess, "the tilt of the cylinder", pair->line);
+  return (struct TiltFunctions){
+      .reach = choose_node(graph, is_tilted, sine, scale(graph, least_sine, reach)),
+      .reach_gradient =
+          choose_node(graph, is_tilted, power_number(graph, sine, -1.0), scale(graph, 2.0 / least_sine, slope)),
+      .rise = choose_node(graph, is_tilted, graph_constant(graph, least_sine), scale(graph, least_sine, y_squared)),
+      .rise_gradient = choose_node(graph, is_tilted, ZERO, scale(graph, 4.0 / least_sine, y))};
+}
+
+/* Returns the normal of the second shape's plane along the axes of the first shape. */
+static struct Vector normal_seen_from_first(const struct ShapePair *pair, struct Vector normal) {
+  struct Vector own = matrix_apply_transposed(pair->graph, &pair->first->pose.rotation, normal);
+  return matrix_apply_transposed(pair->graph, &pair->first->shape->rotation, own);
+}
+
+/* The first shape, a cylinder, on the second shape's plane: it stands on points of its ends, and rolls on its rims. */
+static void rim_contacts(const struct ShapePair *pair, struct ContactPoints *contacts) {
+  struct Graph *graph = pair->graph;
+  const struct ContactShape *shape = pair->first->shape;
+  struct Vector across = normal_seen_from_first(pair, axis_of(pair, pair->second));
+  across.along[shape->axis] = ZERO;
+  struct TiltFunctions tilt = functions_of_tilt(pair, vector_dot(graph, across, across));
+  across = matrix_apply(graph, &shape->rotation, across);
+  plane_contacts(pair, contacts);
+  for (size_t i = 0; i < contacts->count; i++) {
+    bool is_rim = i + CYLINDER_ENDS >= contacts->count;
+    Node rise = is_rim ? negate(graph, tilt.reach) : tilt.rise;
+    Node gradient = is_rim ? negate(graph, tilt.reach_gradient) : tilt.rise_gradient;
+    struct ContactPoint *point = &contacts->items[i];
+    point->gap = add(graph, point->gap, multiply(graph, shape->radius, rise));
+    point->offset =
+        vector_add(graph, point->offset, vector_scale(graph, multiply(graph, shape->radius, gradient), across));
+    point->point = position_at(graph, &pair->first->pose, point->offset);
+  }
+}
+
+/*
  * The first shape, an ellipsoid, on the second shape's plane. With the half axes as the matrix A and the normal n along
  * them, the lowest point is -A^2 n / |A n|, and |A n| is the support function.
  */
 static void ellipsoid_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   struct Vector normal = axis_of(pair, pair->second), centre = middle_of(pair, pair->first), lowest;
-  struct Vector own = matrix_apply_transposed(graph, &pair->first->pose.rotation, normal);
-  own = matrix_apply_transposed(graph, &pair->first->shape->rotation, own);
+  struct Vector own = normal_seen_from_first(pair, normal);
   for (int i = 0; i < 3; i++) {
     Node half = scale(graph, 0.5, pair->first->shape->size.along[i]);
     lowest.along[i] = multiply(graph, power_number(graph, half, 2.0), own.along[i]);
@@ -276,7 +346,7 @@ typedef void ContactFunction(const struct ShapePair *pair, struct ContactPoints 
 static ContactFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
     [SHAPE_SPHERE] = {plane_contacts, sphere_contact, box_contact, cylinder_contact, capsule_contact},
     [SHAPE_BOX] = {plane_contacts},
-    [SHAPE_CYLINDER] = {plane_contacts},
+    [SHAPE_CYLINDER] = {rim_contacts},
     [SHAPE_CAPSULE] = {[SHAPE_PLANE] = plane_contacts, [SHAPE_CAPSULE] = capsules_contact},
     [SHAPE_MESH] = {plane_contacts},
     [SHAPE_ELLIPSOID] = {ellipsoid_contact},
@@ -288,7 +358,7 @@ static size_t point_count(const struct ContactShape *shape) {
   case SHAPE_BOX:
     for (int i = 0; i < 3; i++) corners *= shape->is_flat[i] ? 1 : 2;
     return corners;
-  case SHAPE_CYLINDER: return RIMS_POINTS;
+  case SHAPE_CYLINDER: return CYLINDER_ENDS + (shape->stands ? STANDING_POINTS : 0);
   case SHAPE_CAPSULE: return 2;
   case SHAPE_MESH: return shape->mesh != NULL ? shape->mesh->corner_count : 0;
   default: return 1;

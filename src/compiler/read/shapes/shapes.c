@@ -71,6 +71,9 @@ static void check_measures(struct Reader *reader, xmlNodePtr node, const struct 
     if (has_attribute(node, of_meshes[i]) && shape->type != SHAPE_MESH)
       report_at(reader, node, "the shape '%s' is %s %s, which has no %s; expected none", shape->name, article_of(shape),
                 shape_type_names[shape->type], of_meshes[i]);
+  if (has_attribute(node, "stands") && shape->type != SHAPE_CYLINDER)
+    report_at(reader, node, "the shape '%s' is %s %s, which takes no stands; expected a cylinder", shape->name,
+              article_of(shape), shape_type_names[shape->type]);
   if (shape->type == SHAPE_MESH && !has_attribute(node, "file"))
     report_at(reader, node, "the mesh '%s' has no file; expected file=\"...\" with the path of an STL or OBJ file",
               shape->name);
@@ -87,6 +90,10 @@ static bool is_zero_or_missing(xmlNodePtr node, const char *name) {
   return text == NULL || (strtod(text, &end) == 0 && end != text && *end == '\0');
 }
 
+static bool is_false(xmlNodePtr node, const char *name) {
+  return attribute_is(node, name, "false") || attribute_is(node, name, "0");
+}
+
 void declare_shape(struct Reader *reader, xmlNodePtr node) {
   struct Mechanism *mechanism = &reader->model->mechanism;
   char *name = name_attribute(reader, node, "name");
@@ -98,7 +105,8 @@ void declare_shape(struct Reader *reader, xmlNodePtr node) {
   check_measures(reader, node, &shape);
   if (shape.type == SHAPE_MESH) shape.mesh = mesh_of_shape(reader, node);
   shape.color = attribute(node, "color");
-  shape.is_hidden = attribute_is(node, "drawn", "false") || attribute_is(node, "drawn", "0");
+  shape.is_hidden = is_false(node, "drawn");
+  shape.stands = !is_false(node, "stands");
   for (int i = 0; i < 3; i++) shape.is_flat[i] = is_zero_or_missing(node, measures[2 + i].name);
   reader->present->number = mechanism->shape_count;
   APPEND(mechanism->shapes, mechanism->shape_count, shape);
