@@ -60,7 +60,9 @@ int solve_cones(size_t contacts, double *delassus, const double *friction, doubl
   }
   switches.planes = planes;
   struct Resolution resolution = {.instance = &instance, .switches = &switches};
-  bool is_done = (at_rest ? cone_forces_find : cone_impulses_find)(&resolution, &impulses, rate, impulse);
+  double error;
+  bool is_done = at_rest ? cone_forces_find(&resolution, &impulses, rate, impulse, &error)
+                         : cone_impulses_find(&resolution, &impulses, rate, impulse);
   free(planes);
   free(impulses.member);
   free(impulses.coefficient);

@@ -73,7 +73,20 @@ def heap():
     return f'<shape name="floor" type="plane"/>{walls}{spheres}{contacts}'
 
 
+def column():
+    """Two boxes on each other, of which the upper one is pushed with a growing force."""
+    boxes = "".join(
+        free(f"b{k}", (0, 0, 0.2 * k - 0.1), 'type="box" sizeX="0.4" sizeY="0.6" z="-0.1"')
+        + f'<shape name="top{k}" in="b{k}" type="plane" z="0.1"/>'
+        + CONTACT.format(f"c{k}", f"b{k}Shape", "top1" if k == 2 else "floor")
+        for k in (1, 2)
+    )
+    return f"""<shape name="floor" type="plane"/>{boxes}<parameter name="rate" start="2" unit="N/s"/><parameter name="dir" start="0" unit="rad"/>
+  <parameter name="height" start="0" unit="m"/><point name="pushed" in="b2" z="height"/><force on="pushed" x="rate*time*cos(dir)" y="rate*time*sin(dir)"/>"""
+
+
 TEXTS = {
+    "PushedColumn": column(),
     "Heap": heap(),
     "ThrownBox": FLOOR,
     "BoxOnPlate": PLATE + FLOOR.replace('name="floor"', 'name="floor" in="plate"'),
@@ -250,6 +263,21 @@ def test_pushed_cylinder(mu, rate):
     instance.step(0.04 * tips)
     r1, r2 = instance.get("ar1", "ar2")
     assert r2 * edge[0] - r1 * edge[1] > 1e-4
+    instance.free()
+
+
+@pytest.mark.parametrize("mu, rate, direction, height", [(0.36, 30.3, 2.0, 0.058), (0.51, 26.7, 0.9, 0.09), (0.79, 19.2, 5.1, -0.048), (0.2, 5.6, 3.8, -0.094)])
+def test_pushed_column(mu, rate, direction, height):
+    """The upper box begins to slide where the push reaches mu m g, and then moves by rate t^3/(6 m); the lower one stays."""
+    values = {"mu": mu, "rate": rate, "dir": direction, "height": height}
+    instance = fmu.Instance("PushedColumn").initialize(values)
+    begins = mu * 2 * 9.81 / rate
+    instance.step(0.999 * begins)
+    assert instance.get("b2x", "b2y", "b2vx", "b2vy") == pytest.approx([0] * 4, abs=1e-12)
+    instance.step(0.101 * begins)
+    way = rate * (0.1 * begins) ** 3 / (6 * 2)
+    places = [way * math.cos(direction), way * math.sin(direction), 0, 0]
+    assert instance.get("b2x", "b2y", "b1x", "b1y") == pytest.approx(places, abs=1e-6 * way)
     instance.free()
 
 

@@ -19,12 +19,20 @@ enum { END_POINTS = 8, STANDING_POINTS = 2 * END_POINTS, CYLINDER_ENDS = 2, MOST
 
 /*
  * A rim's lowest point has no direction where a cylinder stands upright on the plane. Let y be the square of the sine of
- * its tilt over that of least_sine. Below y = 1 two functions apply, in units of least_sine times the radius. The rim
- * reaches below its centre by 3/8 + 3/4 y - y^2/8 + (3/8 + recess) (y - 1)^3. That has the value and two derivatives of
- * the sine at y = 1, and is above the end at y = 0. The points on which the cylinder stands rise by y^2, and so touch
- * nothing while it rolls.
+ * its tilt over that of least_sine. Below y = 1 the rim reaches below its centre by 3/8 + 3/4 y - y^2/8, in units of
+ * least_sine times the radius. That has the value and two derivatives of the sine at y = 1, and its lowest point is
+ * never farther from the axis than the radius.
  */
-static const double least_sine = 0.05, recess = 0.1;
+static double least_sine(bool is_rigid) {
+  return is_rigid ? 0.00025 : 0.0025;
+}
+
+/*
+ * Points on which a cylinder stands rise with its tilt, and so touch nothing while it rolls. Rigid ones are lower than
+ * the ends by extension, so that the middles of the ends touch nothing, and rise by lift y; both are in the same unit.
+ * Compliant ones overlap by more than that. They rise by soft_lift times the fourth power of the sine, in radii.
+ */
+static const double extension = 0.4, lift = 0.5, soft_lift = 0.4;
 
 /* Two shapes, with the graph and scope for expressions of their contacts. */
 struct ShapePair {
@@ -32,6 +40,7 @@ struct ShapePair {
   struct Graph *graph;
   long line;
   const struct ContactSide *first, *second;
+  bool is_rigid;
 };
 
 /* Centres of balls of a common radius; the contact points of a shape with a plane are on these balls. */
@@ -167,33 +176,38 @@ static void plane_contacts(const struct ShapePair *pair, struct ContactPoints *c
 }
 
 /*
- * How far a rim reaches below its centre, and how far the points on which a cylinder stands rise, in radii. The gap is a
- * function of the normal n, and its gradient by n is the material point that moves with the gap. For both functions that
- * adds a multiple of the part of n across the axis.
+ * A height in radii as a function of the part of the plane's normal across the cylinder's axis. Its gradient is that part
+ * times a factor. The gap is a function of the normal, whose gradient is the material point that moves with the gap.
  */
-struct TiltFunctions {
-  Node reach, reach_gradient, rise, rise_gradient;
+struct HeightByTilt {
+  Node height, gradient;
 };
 
-static struct TiltFunctions functions_of_tilt(const struct ShapePair *pair, Node squared_sine) {
-  const double square = least_sine * least_sine, bend = 0.375 + recess;
+/* Returns the height of a rim's lowest point above its centre. */
+static struct HeightByTilt height_of_rim(const struct ShapePair *pair, Node squared_sine) {
+  double least = least_sine(pair->is_rigid), square = least * least;
   struct Graph *graph = pair->graph;
   Node sine = power_number(graph, squared_sine, 0.5), y = scale(graph, 1.0 / square, squared_sine);
-  Node y_squared = power_number(graph, y, 2.0), before = subtract(graph, y, ONE),
-       before_squared = power_number(graph, before, 2.0);
-  Node reach = add(graph, graph_constant(graph, 0.375), scale(graph, 0.75, y));
-  reach = subtract(graph, reach, scale(graph, 0.125, y_squared));
-  reach = add(graph, reach, scale(graph, bend, multiply(graph, before, before_squared)));
-  Node slope = subtract(graph, graph_constant(graph, 0.75), scale(graph, 0.25, y));
-  slope = add(graph, slope, scale(graph, 3.0 * bend, before_squared));
   Node excess = subtract(graph, squared_sine, graph_constant(graph, square));
   Node is_tilted = branch_of(pair->scope, excess, "the tilt of the cylinder", pair->line);
-  return (struct TiltFunctions){
-      .reach = choose_node(graph, is_tilted, sine, scale(graph, least_sine, reach)),
-      .reach_gradient =
-          choose_node(graph, is_tilted, power_number(graph, sine, -1.0), scale(graph, 2.0 / least_sine, slope)),
-      .rise = choose_node(graph, is_tilted, graph_constant(graph, least_sine), scale(graph, least_sine, y_squared)),
-      .rise_gradient = choose_node(graph, is_tilted, ZERO, scale(graph, 4.0 / least_sine, y))};
+  Node reach = add(graph, graph_constant(graph, 0.375), scale(graph, 0.75, y));
+  reach = subtract(graph, reach, scale(graph, 0.125, power_number(graph, y, 2.0)));
+  Node slope = subtract(graph, graph_constant(graph, 0.75), scale(graph, 0.25, y));
+  reach = choose_node(graph, is_tilted, sine, scale(graph, least, reach));
+  slope = choose_node(graph, is_tilted, power_number(graph, sine, -1.0), scale(graph, 2.0 / least, slope));
+  return (struct HeightByTilt){negate(graph, reach), negate(graph, slope)};
+}
+
+/* Returns how far the points on which a cylinder stands rise. */
+static struct HeightByTilt rise_of_standing_points(const struct ShapePair *pair, Node squared_sine) {
+  struct Graph *graph = pair->graph;
+  if (!pair->is_rigid)
+    return (struct HeightByTilt){scale(graph, soft_lift, power_number(graph, squared_sine, 2.0)),
+                                 scale(graph, 4.0 * soft_lift, squared_sine)};
+  double least = least_sine(pair->is_rigid);
+  Node rise = scale(graph, lift / least, squared_sine);
+  return (struct HeightByTilt){subtract(graph, rise, graph_constant(graph, extension * least)),
+                               graph_constant(graph, 2.0 * lift / least)};
 }
 
 /* Returns the normal of the second shape's plane along the axes of the first shape. */
@@ -208,17 +222,16 @@ static void rim_contacts(const struct ShapePair *pair, struct ContactPoints *con
   const struct ContactShape *shape = pair->first->shape;
   struct Vector across = normal_seen_from_first(pair, axis_of(pair, pair->second));
   across.along[shape->axis] = ZERO;
-  struct TiltFunctions tilt = functions_of_tilt(pair, vector_dot(graph, across, across));
+  Node squared_sine = vector_dot(graph, across, across);
+  struct HeightByTilt rim = height_of_rim(pair, squared_sine), standing = rise_of_standing_points(pair, squared_sine);
   across = matrix_apply(graph, &shape->rotation, across);
   plane_contacts(pair, contacts);
   for (size_t i = 0; i < contacts->count; i++) {
-    bool is_rim = i + CYLINDER_ENDS >= contacts->count;
-    Node rise = is_rim ? negate(graph, tilt.reach) : tilt.rise;
-    Node gradient = is_rim ? negate(graph, tilt.reach_gradient) : tilt.rise_gradient;
+    struct HeightByTilt own = i + CYLINDER_ENDS < contacts->count ? standing : rim;
     struct ContactPoint *point = &contacts->items[i];
-    point->gap = add(graph, point->gap, multiply(graph, shape->radius, rise));
-    point->offset =
-        vector_add(graph, point->offset, vector_scale(graph, multiply(graph, shape->radius, gradient), across));
+    point->gap = add(graph, point->gap, multiply(graph, shape->radius, own.height));
+    struct Vector shift = vector_scale(graph, multiply(graph, shape->radius, own.gradient), across);
+    point->offset = vector_add(graph, point->offset, shift);
     point->point = position_at(graph, &pair->first->pose, point->offset);
   }
 }
@@ -372,11 +385,12 @@ size_t count_contact_points(const struct ContactShape *first, const struct Conta
 }
 
 struct ContactPoints contact_points_of(struct Reader *reader, long line, const struct ContactSide *first,
-                                       const struct ContactSide *second) {
+                                       const struct ContactSide *second, bool is_rigid) {
   struct Graph *graph = reader->model->graph;
   ContactFunction *append_contacts = functions[first->shape->type][second->shape->type];
   bool is_exchanged = append_contacts == NULL;
-  struct ShapePair pair = {reader->scope, graph, line, is_exchanged ? second : first, is_exchanged ? first : second};
+  struct ShapePair pair = {reader->scope, graph, line, is_exchanged ? second : first, is_exchanged ? first : second,
+                           is_rigid};
   if (is_exchanged) append_contacts = functions[second->shape->type][first->shape->type];
   struct ContactPoints contacts = {
       .items = allocate(count_contact_points(first->shape, second->shape), sizeof *contacts.items)};

@@ -35,6 +35,6 @@ struct ContactSide contact_side_of(struct Reader *reader, long line, const struc
  */
 size_t count_contact_points(const struct ContactShape *first, const struct ContactShape *second);
 
-/* Returns the contact points, count_contact_points() of them. */
+/* Returns the contact points, count_contact_points() of them, for rigid or compliant contacts. */
 struct ContactPoints contact_points_of(struct Reader *reader, long line, const struct ContactSide *first,
-                                       const struct ContactSide *second);
+                                       const struct ContactSide *second, bool is_rigid);

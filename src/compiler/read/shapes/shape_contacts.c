@@ -193,7 +193,7 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   if (reader->diagnostics->errors > 0 || !find_shapes(reader, node, shapes)) return false;
   contact->first = contact_side_of(reader, line, shapes[0]);
   contact->second = contact_side_of(reader, line, shapes[1]);
-  contact->contacts = contact_points_of(reader, line, &contact->first, &contact->second);
+  contact->contacts = contact_points_of(reader, line, &contact->first, &contact->second, !is_compliant(node));
   if (contact->contacts.carrier != NULL) contact->sliding = sliding_field_of(reader->model->graph, contact);
   expect_centres_outside(reader, node, contact);
   return check_motion(reader, node, contact);

@@ -80,7 +80,7 @@ static bool find_combined_impulses(struct Combination *combination) {
     for (size_t j = 0; j < n; j++) row[j] = effect_in(combination, combination->sought[i], combination->sought[j]);
     row[n] = -combination->rate[combination->sought[i]];
   }
-  if (!solve_by_elimination(n, combination->equations)) return false;
+  if (!solve_by_elimination(n, combination->equations, usual_least_pivot)) return false;
   for (size_t i = 0; i < count; i++) combination->impulse[i] = 0.0;
   for (size_t i = 0; i < n; i++) combination->impulse[combination->sought[i]] = combination->equations[i * (n + 1) + n];
   for (size_t f = combination->impulses->contact_count; f < count; f++)

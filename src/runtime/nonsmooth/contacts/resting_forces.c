@@ -112,7 +112,7 @@ static bool find_forces(const struct RestingForces *resting, unsigned combinatio
     for (size_t j = 0; j < count; j++) a[i * width + j] = between(resting, member[i], member[j]);
     a[i * width + count] = -resting->free[resting->group[member[i]]];
   }
-  if (!solve_by_elimination(count, a)) return false;
+  if (!solve_by_elimination(count, a, usual_least_pivot)) return false;
   for (size_t i = 0; i < resting->group_count; i++) resting->force[resting->group[i]] = 0.0;
   for (size_t i = 0; i < count; i++) resting->force[resting->group[member[i]]] = a[i * width + count];
   return true;

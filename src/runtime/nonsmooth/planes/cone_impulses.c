@@ -145,21 +145,26 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
   return is_done;
 }
 
-/* Finds forces by an interior path, in the middle of those that are possible; else by sweeps from no force. */
-static bool fulfil_law_of_forces(struct Cones *cones, double *best, double *swept, double *work) {
-  size_t bytes = cones->impulses->count * sizeof *swept;
-  if (cone_interior(cones, law_holds, true, work) <= law_roughly_holds) return true;
-  memset(swept, 0, bytes);
-  return come_to_law(cones, LAW_TRIALS, best, swept, work) <= law_roughly_holds;
+/*
+ * Finds forces by an interior path, in the middle of those that are possible; else by sweeps from no force. Returns their
+ * relative residual.
+ */
+static double fulfil_law_of_forces(struct Cones *cones, double *best, double *swept, double *work) {
+  double miss = cone_interior(cones, law_holds, true, work);
+  if (miss <= law_roughly_holds) return miss;
+  memset(swept, 0, cones->impulses->count * sizeof *swept);
+  return come_to_law(cones, LAW_TRIALS, best, swept, work);
 }
 
 bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
-                      double *force) {
+                      double *force, double *error) {
   struct Cones cones;
   size_t n = impulses->count;
   double *work = create_cones(resolution, impulses, rate, force, &cones);
   if (work == NULL) return false;
-  bool is_done = fill_scales(&cones) && fulfil_law_of_forces(&cones, work, work + n, work + 2 * n);
+  double miss = fill_scales(&cones) ? fulfil_law_of_forces(&cones, work, work + n, work + 2 * n) : INFINITY;
+  bool is_done = miss <= law_roughly_holds;
+  *error = is_done ? miss * cones_largest(&cones) : INFINITY;
   scratch_return(resolution->instance, SCRATCH_CONES);
   return is_done;
 }

@@ -12,10 +12,10 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
 
 /*
  * Finds forces at rest: impulses of the same law, with the accelerations as rates. Where several sets of forces fulfil
- * it, these have a margin to their limits. False if none are found.
+ * it, these have a margin to their limits. error: the residual, an acceleration. False if none are found.
  */
 bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
-                      double *force);
+                      double *force, double *error);
 
 /* Implements has_other_impulses. It searches from several starts, and so may miss some. */
 bool cone_impulses_have_others(const struct Resolution *resolution, const struct ContactImpulses *impulses,

@@ -42,8 +42,20 @@ static const double inside = 0.99;
 static const double centering[] = {0.1, 0.5};
 static const double long_step = 0.6;
 
+/*
+ * Pivots of W + Q that count as 0; elements of W are of order 1. Q falls with mu, and determines the forces that W does
+ * not, those of redundant supports.
+ */
+static const double least_path_pivot = 1e-15;
+
 /* mu at which Newton's method is tried at each step, and at which the path ends; rates and impulses are of order 1. */
 static const double nearly_none = 1e-6, none = 1e-15;
+
+/*
+ * A residual up to which a path has ended at a solution. Where a friction that sticks is at its limit, both s and y of
+ * its pair fall as sqrt(mu), and the associated problem ends no nearer.
+ */
+static const double nearly_solved = 1e-6;
 
 /* A problem scaled such that W_ii = 1 and the largest rate is 1. Vectors have an element a row. */
 struct Interior {
@@ -247,7 +259,7 @@ static double find_path_step(const struct Interior *interior, double mu) {
   size_t n = interior->n;
   double longest = INFINITY;
   fill_step_equations(interior, mu);
-  if (!solve_by_elimination(n, interior->equations)) return 0.0;
+  if (!solve_by_elimination(n, interior->equations, least_path_pivot)) return 0.0;
   for (size_t i = 0; i < n; i++) interior->dx[i] = interior->equations[i * (n + 1) + n];
   for (size_t row = 0; row < n; row += cones_row_count(interior->cones, row)) {
     if (!takes_part(interior, row)) continue;
@@ -386,7 +398,7 @@ double cone_interior(struct Cones *cones, double enough, bool is_centered, doubl
       is_found = follow_central_path(&interior, newton);
     }
     interior.is_associated = true;
-    for (int count = 0; count < ASSOCIATED_LIMIT && !is_found; count++) {
+    for (int count = 0; count < ASSOCIATED_LIMIT && interior.least > nearly_solved && !is_found; count++) {
       is_found = follow_central_path(&interior, newton);
       update_shift(&interior, count >= UNDAMPED_LIMIT);
     }

@@ -22,8 +22,8 @@
 #include "nonsmooth/planes/cone_impulses.h"
 #include "nonsmooth/planes/cones.h"
 
-/* Relative to the largest acceleration: smaller ones are rounding errors. */
-static const double rounded_share = 1e-9;
+/* Relative to the largest acceleration, and to the residual of the law: smaller ones count as 0. */
+static const double rounded_share = 1e-9, error_share = 2.0;
 
 /*
  * Relative to the limit. Forces that exceed it by less than share_at_limit are at the limit. A friction that was
@@ -287,7 +287,9 @@ static bool begins_to_slip(const struct PlaneRests *rests, size_t row) {
   const double *force = &rests->force[row];
   struct PlaneState state = state_of_row(rests, row);
   double limit = limit_at(rests, row, rests->impulses.given, rests->impulses.coefficient);
-  double least = (1.0 - least_margin) * limit - share_at_limit * largest_stiction(rests->resolution);
+  double rounding = share_at_limit * largest_stiction(rests->resolution),
+         response = rests->impulses.delassus[row * (rests->n + 1)];
+  double least = (1.0 - least_margin) * limit - rounding - (response > 0.0 ? rests->none / response : 0.0);
   bool is_overcome = *part_of_plane(rests->resolution, &state) == IS_OVERCOME;
   return accelerates(rests, row) || (is_overcome && hypot(force[0], force[1]) >= least);
 }
@@ -306,11 +308,13 @@ static bool lower_limits(struct PlaneRests *rests) {
 
 /* Finds the forces. False if there are none. */
 static bool solve_law(struct PlaneRests *rests) {
+  double error;
   if (!fill_functions(rests)) return false;
   do {
     fill_limits(rests);
-    if (!cone_forces_find(rests->resolution, &rests->impulses, rests->free, rests->force)) return false;
-    rests->none = rounded_share * fill_rates_behind(&rests->impulses, rests->free, rests->force, rests->behind);
+    if (!cone_forces_find(rests->resolution, &rests->impulses, rests->free, rests->force, &error)) return false;
+    double largest = fill_rates_behind(&rests->impulses, rests->free, rests->force, rests->behind);
+    rests->none = fmax(rounded_share * largest, error_share * error);
     rests->resolution->least_acceleration = rests->none;
   } while (lower_limits(rests));
   return true;
