@@ -85,7 +85,19 @@ def column():
   <parameter name="height" start="0" unit="m"/><point name="pushed" in="b2" z="height"/><force on="pushed" x="rate*time*cos(dir)" y="rate*time*sin(dir)"/>"""
 
 
+def rocking_column():
+    """Three square boxes on each other that move in a vertical plane."""
+    return '<shape name="floor" type="plane"/>' + "".join(
+        f"""<coordinate name="b{k}x" velocity="b{k}vx" unit="m"/><coordinate name="b{k}z" velocity="b{k}vz" unit="m" start="{0.2 * k - 0.1}"/>
+  <coordinate name="b{k}a" velocity="b{k}w" unit="rad"/><frame name="b{k}"><translate x="b{k}x" z="b{k}z"/><rotate axis="y" angle="b{k}a"/></frame>
+  <body name="b{k}Body" in="b{k}" mass="m" Ixx="0.03" Iyy="0.03" Izz="0.03"/><shape name="sole{k}" in="b{k}" type="box" sizeX="0.2" z="-0.1"/>
+  <shape name="top{k}" in="b{k}" type="plane" z="0.1"/>{CONTACT.format(f"c{k}", f"sole{k}", f"top{k - 1}" if k > 1 else "floor")}"""
+        for k in (1, 2, 3)
+    )
+
+
 TEXTS = {
+    "RockingColumn": rocking_column(),
     "PushedColumn": column(),
     "Heap": heap(),
     "ThrownBox": FLOOR,
@@ -278,6 +290,17 @@ def test_pushed_column(mu, rate, direction, height):
     way = rate * (0.1 * begins) ** 3 / (6 * 2)
     places = [way * math.cos(direction), way * math.sin(direction), 0, 0]
     assert instance.get("b2x", "b2y", "b1x", "b1y") == pytest.approx(places, abs=1e-6 * way)
+    instance.free()
+
+
+@pytest.mark.parametrize("mu, spins, slides", [(1.0605673135181113, (-0.33902690883089304, 0.05774454736569212, -0.13192005833572873), -0.5683863809517765),
+                                               (0.9337377284522126, (0.16166872080247408, -0.43100676376797753, 0.20280164710971882), 0.28662775767141896)])  # fmt: skip
+def test_rocking_column(mu, spins, slides):
+    """It comes to rest. Contacts that close as others come to rest have no impact, and frictions that stop with others have no velocity."""
+    instance, energies = run("RockingColumn", {"mu": mu, "b3vx": slides} | dict(zip(("b1w", "b2w", "b3w"), spins)), 2.0)
+    weights = [instance.get(f"c{k}[1].force") + instance.get(f"c{k}[2].force") for k in (1, 2, 3)]
+    assert weights == pytest.approx([3 * 2 * 9.81, 2 * 2 * 9.81, 2 * 9.81], rel=1e-9)
+    assert energies[-1] == pytest.approx(2 * 9.81 * sum(instance.get("b1z", "b2z", "b3z")), abs=1e-9)
     instance.free()
 
 

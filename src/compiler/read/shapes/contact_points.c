@@ -28,8 +28,8 @@ static double least_sine(bool is_rigid) {
 }
 
 /*
- * Points on which a cylinder stands rise with its tilt, and so touch nothing while it rolls. Rigid ones are lower than
- * the ends by extension, so that the middles of the ends touch nothing, and rise by lift y; both are in the same unit.
+ * Points on which a cylinder stands rise with its tilt, and so touch nothing while it rolls. Rigid ones rise by
+ * lift y less extension, in the same unit. So they are lower than the ends, and the middles of the ends touch nothing.
  * Compliant ones overlap by more than that. They rise by soft_lift times the fourth power of the sine, in radii.
  */
 static const double extension = 0.4, lift = 0.5, soft_lift = 0.4;

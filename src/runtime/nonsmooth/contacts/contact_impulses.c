@@ -10,6 +10,8 @@
 
 /* Flights shorter than this many units in the last place of the time count as rest: their ends cannot be separated. */
 static const double shortest_flight = 1000.0;
+/* Smaller speeds have no direction: their squares are close to underflow. */
+static const double least_speed = 1e-150;
 /* Bounces below this share of the method's error are lost in it, and some methods would sustain them. */
 static const double lost_share = 0.02;
 
@@ -72,6 +74,25 @@ void set_friction(struct Resolution *resolution, size_t friction, double mode) {
   size_t plane = plane_of(switches, friction);
   if (plane < switches->plane_count) switches->friction_laws->set_plane(resolution, plane, mode != 0.0);
   else resolution_set_mode(resolution, switches->frictions[friction].mode, mode);
+}
+
+bool evaluate_velocities(struct Resolution *resolution) {
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  resolution->switches->switching_values(&point, resolution->acceleration, resolution->value);
+  return true;
+}
+
+bool let_stopped_slip(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (switches->plane_count == 0) return true;
+  if (!evaluate_velocities(resolution)) return false;
+  for (size_t i = 0; i < switches->plane_count; i++) {
+    size_t along = switches->planes[i].along;
+    if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > least_speed))
+      set_friction(resolution, along, 1.0);
+  }
+  return true;
 }
 
 double sliding_share(const struct Resolution *resolution, size_t friction) {

@@ -74,6 +74,15 @@ static inline bool friction_sticks(const struct Resolution *resolution, size_t f
 /* Sets the mode of a friction: 0 for sticking, else the sign of its velocity, which frictions in planes ignore. */
 void set_friction(struct Resolution *resolution, size_t friction, double mode);
 
+/* Evaluates the values after velocities have changed, with the last accelerations. False if that fails. */
+bool evaluate_velocities(struct Resolution *resolution);
+
+/*
+ * After velocities were projected: lets frictions in planes that do not stick, and have stopped, slip along their last
+ * direction. False if values cannot be evaluated.
+ */
+bool let_stopped_slip(struct Resolution *resolution);
+
 /* Returns the factor of the force of a sliding friction: the sign of the velocity, or a component of its direction. */
 double sliding_share(const struct Resolution *resolution, size_t friction);
 

@@ -49,9 +49,6 @@ static const double unresolved_share = 1e-6;
 /* Forces below this share of the largest one are rounding errors, where a body begins to tip over an edge. */
 static const double vanishing_share = 1e-13;
 
-/* Smaller speeds have no direction: their squares are close to underflow. */
-static const double least_speed = 1e-150;
-
 static const char penetrated[] = "a contact is penetrated";
 static const char no_impact[] = "an impact of a contact has no solution";
 
@@ -78,7 +75,8 @@ static size_t find_impact(const struct Resolution *resolution) {
     bool is_open = !contact_is_closed(resolution, i) && resolution->was_opened[i] == 0.0;
     bool is_hit_first =
         is_hit(resolution, contact_indicator(resolution->switches, i)) && is_open && resolution->impacts == 0;
-    bool closes = resolution->value[rate] < (is_hit_first ? 0.0 : -resolution->error_bound[rate]);
+    double error = fmax(resolution->error_bound[rate], resolution->lost_speed);
+    bool closes = resolution->value[rate] < (is_hit_first ? 0.0 : -error);
     if (!closes || is_error_of_solver(resolution, i) || !is_touching(resolution, i) ||
         resolution->value[rate] >= fastest)
       continue;
@@ -172,30 +170,6 @@ static void let_all_slide(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++) set_friction(resolution, i, 1.0);
 }
 
-/* Evaluates the values after velocities have changed, with the last accelerations. False if that fails. */
-static bool evaluate_velocities(struct Resolution *resolution) {
-  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
-  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
-  resolution->switches->switching_values(&point, resolution->acceleration, resolution->value);
-  return true;
-}
-
-/*
- * Lets frictions in planes that do not stick, and have stopped, slip along their last direction. False if values cannot
- * be evaluated.
- */
-static bool let_stopped_slip(struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  if (switches->plane_count == 0) return true;
-  if (!evaluate_velocities(resolution)) return false;
-  for (size_t i = 0; i < switches->plane_count; i++) {
-    size_t along = switches->planes[i].along;
-    if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > least_speed))
-      set_friction(resolution, along, 1.0);
-  }
-  return true;
-}
-
 /* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
 static bool take_impact(struct Resolution *resolution, size_t contact) {
   bool passes = passes_on(resolution, contact);
@@ -254,11 +228,17 @@ static bool sinks_without_acceleration(const struct Resolution *resolution, size
          fabs(value[CONTACT_ACCELERATION]) <= error_bound[CONTACT_ACCELERATION];
 }
 
+/* True if the projection of other contacts that came to rest left the contact closing, too slowly for an impact. */
+static bool closes_by_projection(const struct Resolution *resolution, size_t contact) {
+  size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
+  return resolution->lost_speed > 0.0 && resolution->value[rate] < -resolution->error_bound[rate];
+}
+
 /* True if an open contact touches, and would sink, or only make bounces that errors hide. */
 static bool comes_to_rest(const struct Resolution *resolution, size_t contact) {
   size_t acceleration = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
   if (resolution->was_opened[contact] != 0.0 || !is_touching(resolution, contact)) return false;
-  if (sinks_without_acceleration(resolution, contact)) return true;
+  if (sinks_without_acceleration(resolution, contact) || closes_by_projection(resolution, contact)) return true;
   if (!(-resolution->value[acceleration] > resolution->error_bound[acceleration])) return false;
   return is_overtaken(resolution, contact) ||
          bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
@@ -313,6 +293,8 @@ static bool close_those(struct Resolution *resolution, bool (*rests)(const struc
   bool closes = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
     if (contact_is_closed(resolution, i) || !rests(resolution, i)) continue;
+    double speed = fabs(contact_value(resolution, i, CONTACT_RATE));
+    resolution->lost_speed = fmax(resolution->lost_speed, speed);
     set_contact(resolution, i, true);
     let_stick(resolution, i);
     closes = true;

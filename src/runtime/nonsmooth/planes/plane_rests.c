@@ -139,9 +139,10 @@ static bool bring_to_rest(struct Resolution *resolution) {
     plane_stick(resolution, &state);
     moves |= state.speed > 0.0;
   }
-  bool is_done = !moves || resolution->occasion == AT_START || resolution_project_velocities(resolution);
+  bool is_projected = moves && resolution->occasion != AT_START;
+  bool is_done = !is_projected || resolution_project_velocities(resolution);
   resolution_restore_modes(resolution);
-  return is_done;
+  return is_done && (!is_projected || let_stopped_slip(resolution));
 }
 
 /* True if the velocity of a friction that slid changes although it sticks. */
