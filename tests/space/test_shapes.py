@@ -1,5 +1,6 @@
 """Shapes in contact: gaps against a search for the nearest points, forces and motions against closed forms and conserved quantities."""
 
+import itertools
 import math
 import random
 import subprocess
@@ -34,6 +35,7 @@ SHAPES = {
     "Cylinder": '<shape name="{0}" in="{1}" type="cylinder" radius="0.35" length="0.7" axis="x" y="0.03"/>',
 }
 PAIRS = [("Sphere", "Sphere"), ("Sphere", "Capsule"), ("Box", "Sphere"), ("Sphere", "Cylinder"), ("Capsule", "Capsule")]
+ON_BOX = ("Capsule", "Box")  # these touch at the ends of the capsule and at the edges of the box
 PAIR = """<system name="{0}{1}">{HEAD}{a}{b}
   {first}{second}{contact}<experiment stopTime="1"/></system>"""
 SLOPE = f"""<system name="Slope">{HEAD}<parameter name="slope" start="0.3" unit="rad"/>
@@ -53,6 +55,10 @@ SIDES = "".join(f'<parameter name="{side}" start="0.4" unit="m"/>' for side in "
 CRATE = f"""<system name="Crate">{HEAD}{SIDES}{free("a").replace('Ixx="0.4*m*r^2" Iyy="0.4*m*r^2" Izz="0.4*m*r^2"', 'Ixx="m*(B^2+C^2)/12" Iyy="m*(A^2+C^2)/12" Izz="m*(A^2+B^2)/12"')}
   <shape name="block" in="a" type="box" sizeX="A" sizeY="B" sizeZ="C"/><shape name="floor" type="plane"/><gravity z="-g"/>
   <contact name="touch" between="block" and="floor"/><solver method="taylor"/><experiment stopTime="2" stepSize="0.01"/></system>"""
+
+BENCH = f"""<system name="OnBench">{HEAD}<parameter name="length" start="1" unit="m"/>{free("a")}<gravity z="-g"/>
+  <shape name="rod" in="a" type="capsule" axis="y" radius="r" length="length"/><shape name="bench" type="box" sizeX="0.3" sizeY="0.4" sizeZ="0.2" z="-0.1"/>
+  <contact name="touch" between="rod" and="bench" friction="0.5"/><experiment stopTime="1"/></system>"""
 
 # A crate in planar motion, at depth d in a floor that may move up and down.
 FLAT = """<system name="Flat"><constant name="a" value="0.4" unit="m"/><constant name="h" value="0.2" unit="m"/>
@@ -87,8 +93,8 @@ SINKING = """<system name="{name}">{HEAD}<coordinate name="z" velocity="v" unit=
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Crate": CRATE, "Three": THREE, "Twice": TWICE, "Lever": LEVER, "Flat": FLAT}
-    for first, second in PAIRS:
+    texts = {"Slope": SLOPE, "Stand": STAND, "Hard": HARD, "Crate": CRATE, "Three": THREE, "Twice": TWICE, "Lever": LEVER, "Flat": FLAT, "OnBench": BENCH}
+    for first, second in [*PAIRS, ON_BOX]:
         parts = {"first": SHAPES[first].format("one", "a"), "second": SHAPES[second].format("other", "b"), "contact": CONTACT.format("one", "other")}
         texts[first + second] = PAIR.format(first, second, HEAD=HEAD, a=free("a"), b=free("b", "1"), **parts)
     for kind, obstacle in OBSTACLES.items():
@@ -157,6 +163,67 @@ def test_depths(kinds):
             assert instance.get("touch.force") == pytest.approx(1e5 * max(0.0, -gap), rel=1e-6, abs=1e-3)
         deep += gap < 0
     assert 5 < deep < 60
+
+
+def gaps_of_ends_and_edges(places, rotations):
+    """Gaps of the ends of the capsule, and of its axis at each edge of the box, by alternating projections onto both segments."""
+    seen = lambda point: rotations[1].inv().apply(places[0] + rotations[0].apply(point) - places[1])
+    ends = [seen(np.array([0, y, 0.05])) for y in (-0.4, 0.4)]
+    gaps = [np.linalg.norm(end - nearest("Box", end)) - 0.2 for end in ends]
+    middle, direction = (ends[0] + ends[1]) / 2, (ends[1] - ends[0]) / 0.8
+    low, high = np.array([-0.3, -0.5, -0.5]), np.array([0.3, 0.3, 0.5])
+    for axis in range(3):
+        for corner in itertools.product((0, 1), repeat=2):
+            first = np.insert([(low, high)[side][k] for side, k in zip(corner, [k for k in range(3) if k != axis])], axis, low[axis])
+            last = np.where(np.arange(3) == axis, high, first)
+            other = (first + last) / 2
+            for _ in range(400):
+                whole = direction @ (other - middle)
+                point = middle + np.clip(whole, -0.4, 0.4) * direction
+                other = np.where(np.arange(3) == axis, np.clip(point, low, high), first)
+            excess = max(abs(whole) - 0.4, 0)
+            gaps.append(np.linalg.norm(point - other) - 0.2 + excess**2 / 0.2)
+    return gaps
+
+
+def test_depths_of_a_capsule_in_a_box():
+    """The least gap of the ends and the edges is that of the solids, and the force adds up the depths of all."""
+    chance, touching = random.Random(2), 0
+    for _ in range(16):
+        rotations = [Rotation.from_quat([chance.gauss(0, 1) for _ in range(4)]) for _ in range(2)]
+        places = [np.zeros(3), np.array([chance.uniform(-0.7, 0.7) for _ in range(3)])]
+        gaps, gap = gaps_of_ends_and_edges(places, rotations), distance(ON_BOX, places, rotations)
+        if gap < -0.19:
+            continue  # the axis enters the box
+        assert min(gaps) == pytest.approx(gap, abs=1e-6)
+        with Running("CapsuleBox", pose("a", places[0], rotations[0]) | pose("b", places[1], rotations[1])) as instance:
+            assert instance.get("touch.force") == pytest.approx(1e5 * sum(max(0.0, -gap) for gap in gaps), rel=1e-5, abs=0.1)
+        touching += gap < 0
+    assert touching > 5
+
+
+def test_a_capsule_hits_a_box():
+    """With friction and damping, momentum and angular momentum are conserved, and energy decreases, by impacts of an end and of an edge."""
+    for side in (0.0, 0.35):
+        values = pose("a", np.array([-1.0, 0.2, side]), Rotation.from_euler("xz", [0.5, 1.0])) | {"avx": 2.0, "bx": 0.0, "c": 0.3, "mu": 0.5}
+        with Running("CapsuleBox", values) as instance:
+            before = momenta(instance)
+            instance.run(1.0, 0.01)
+            after = momenta(instance)
+            assert instance.get("bvx") > 0.2
+        assert after[0] == pytest.approx(before[0], abs=1e-8) and after[1] == pytest.approx(before[1], abs=1e-8)
+        assert after[2] < 0.999 * before[2]
+
+
+def test_a_capsule_lies_across_a_box():
+    """A rigid capsule on two edges of a narrower box: the edges carry it by the law of the lever. On its top, both ends do."""
+    weight = 2 * 9.81
+    for length, place, expected in [(1.0, 0.05, [weight * 5 / 8, weight * 3 / 8]), (0.3, 0.04, [weight / 2, weight / 2])]:
+        with Running("OnBench", {"length": length, "ay": place, "az": 0.1}) as instance:
+            forces = [instance.get(f"touch[{i}].force") for i in range(1, 15)]
+            assert sorted(force for force in forces if force > 1e-9) == pytest.approx(sorted(expected), rel=1e-9)
+            instance.run(1.0, 0.1)
+            assert [instance.get(name) for name in ("ax", "ay", "az")] == pytest.approx([0, place, 0.1], abs=1e-9)
 
 
 def momenta(instance, moment=0.4 * 2 * 0.1**2):

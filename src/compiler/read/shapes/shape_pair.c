@@ -1,0 +1,27 @@
+#include "read/shapes/shape_pair.h"
+
+#include "algebra/simplify.h"
+
+struct Vector along_axis(const struct ContactShape *shape, Node length) {
+  struct Vector vector = {{ZERO, ZERO, ZERO}};
+  vector.along[shape->axis] = length;
+  return vector;
+}
+
+struct Vector rotated_by(const struct ShapePair *pair, const struct ContactSide *side, struct Vector vector) {
+  vector = matrix_apply(pair->graph, &side->shape->rotation, vector);
+  return matrix_apply(pair->graph, &side->pose.rotation, vector);
+}
+
+struct Vector seen_by(const struct ShapePair *pair, const struct ContactSide *side, struct Vector vector) {
+  vector = matrix_apply_transposed(pair->graph, &side->pose.rotation, vector);
+  return matrix_apply_transposed(pair->graph, &side->shape->rotation, vector);
+}
+
+struct Vector axis_of(const struct ShapePair *pair, const struct ContactSide *side) {
+  return rotated_by(pair, side, along_axis(side->shape, ONE));
+}
+
+struct Vector middle_of(const struct ShapePair *pair, const struct ContactSide *side) {
+  return position_at(pair->graph, &side->pose, side->shape->offset);
+}
