@@ -164,7 +164,7 @@ bool cone_forces_find(const struct Resolution *resolution, const struct ContactI
   if (work == NULL) return false;
   double miss = fill_scales(&cones) ? fulfil_law_of_forces(&cones, work, work + n, work + 2 * n) : INFINITY;
   bool is_done = miss <= law_roughly_holds;
-  *error = is_done ? miss * cones_largest(&cones) : INFINITY;
+  *error = is_done ? 2.0 * miss * cones_largest(&cones) : INFINITY;
   scratch_return(resolution->instance, SCRATCH_CONES);
   return is_done;
 }

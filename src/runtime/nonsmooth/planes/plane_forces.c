@@ -19,9 +19,6 @@
 /* Accelerations, also those by forces, are rounding errors below this share of the largest one. */
 static const double least_force_share = 1e-9;
 
-/* So are accelerations below this multiple of the residual of the law. */
-static const double error_share = 2.0;
-
 /* With the rows of `impulses`: accelerations without these forces, the forces, and the accelerations with them. */
 struct PlaneForces {
   struct Resolution *resolution;
@@ -168,7 +165,7 @@ static bool find_plane_forces(struct PlaneForces *forces) {
   bool is_done = cone_forces_find(resolution, &forces->impulses, forces->rate, forces->force, &error);
   if (is_done) {
     double largest = fill_rates_behind(&forces->impulses, forces->rate, forces->force, forces->behind);
-    double none = fmax(least_force_share * largest, error_share * error);
+    double none = fmax(least_force_share * largest, error);
     set_contacts(forces, none);
     set_planes(forces, none);
   }

@@ -22,8 +22,8 @@
 #include "nonsmooth/planes/cone_impulses.h"
 #include "nonsmooth/planes/cones.h"
 
-/* Relative to the largest acceleration, and to the residual of the law: smaller ones count as 0. */
-static const double rounded_share = 1e-9, error_share = 2.0;
+/* Relative to the largest acceleration: smaller ones are rounding errors. */
+static const double rounded_share = 1e-9;
 
 /*
  * Relative to the limit. Forces that exceed it by less than share_at_limit are at the limit. A friction that was
@@ -315,7 +315,7 @@ static bool solve_law(struct PlaneRests *rests) {
     fill_limits(rests);
     if (!cone_forces_find(rests->resolution, &rests->impulses, rests->free, rests->force, &error)) return false;
     double largest = fill_rates_behind(&rests->impulses, rests->free, rests->force, rests->behind);
-    rests->none = fmax(rounded_share * largest, error_share * error);
+    rests->none = fmax(rounded_share * largest, error);
     rests->resolution->least_acceleration = rests->none;
   } while (lower_limits(rests));
   return true;
