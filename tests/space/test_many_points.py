@@ -48,13 +48,15 @@ def built():
 
 def points_of_cylinder(rotation):
     """
-    The lowest points of its rims in the body's frame, and the points on which it stands. These rise by 0.04 sin(tilt)^4 along the normal,
-    and move with the gradient of that by the normal's part across the axis.
+    The lowest points of its rims in the body's frame, and the points on which it stands. The latter rise by 0.04 sin(tilt)^4 along the
+    normal, the former by 0.0004 (1 - (sin(tilt)/0.3)^2)^2 up to 0.3. Both move with the gradient of that by the normal's part across the axis.
     """
     across = rotation.inv().apply(NORMAL) * (1, 1, 0)
     sine = np.linalg.norm(across)
     rise, shift = 0.04 * sine**4, 0.16 * sine**2 * across
-    return [(end - 0.1 * across / sine, 0.0) for end in ENDS] + [(point + shift, rise - NORMAL @ rotation.apply(shift)) for point in STANDING]
+    above = max(1 - sine**2 / 0.09, 0)
+    rims = [(end - 0.1 * across / sine, -0.0016 / 0.09 * above * across, 0.0004 * above**2) for end in ENDS]
+    return [(point + moved, gap - NORMAL @ rotation.apply(moved)) for point, moved, gap in rims] + [(point + shift, rise - NORMAL @ rotation.apply(shift)) for point in STANDING]
 
 
 def wrench(points, radius, position, rotation, velocity, spin):

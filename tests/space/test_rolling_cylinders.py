@@ -122,6 +122,24 @@ def test_standing():
     assert rows == pytest.approx(np.full((11, 3), [RADIUS - depth, 0, MASS * G]), abs=1e-9)
 
 
+def test_standing_on_a_slope():
+    """A compliant can on a slope below its friction's stays upright and creeps: by the regularized law with v = creep r/sqrt(1 - r^2)."""
+    share = 0.9  # r: of the friction that the slope needs
+    values = {"slope": math.atan(share * 0.8), "z": LENGTH / 2 - 2e-4, **start_of(Rotation.from_euler("x", math.pi / 2), (0, 0, 0))}
+    rows, events = running("SoftCan", values, 1.0, 0.1, "x", "q0", "q1", "q2")
+    speed = 1e-3 * share / math.sqrt(1 - share**2)
+    assert np.diff(rows[5:, 0]) == pytest.approx(0.1 * speed, rel=0.02)
+    assert np.max(np.abs(2 * (rows[:, 1] * rows[:, 3]))) < 1e-3 and events < 20
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.2, 0.8])
+def test_a_wheel_falls_on_its_side(tilt):
+    """It rocks on the middle of its end, where its rims have no lowest point, without energy from nothing."""
+    values = {"z": 0.13, **start_of(Rotation.from_euler("x", math.pi / 2 - tilt), (0, 0, 0))}
+    rows, _ = running("RollingWheel", values, 1.5, 0.01, "totalEnergy", "z")
+    assert np.max(np.diff(rows[:, 0])) < 1e-8 and np.min(rows[:, 1]) > LENGTH / 2
+
+
 def test_tipping():
     """A can that is thrown lands on an edge, turns over it and rolls: energy never grows, and no rim was below the floor."""
     rows, _ = running("RollingCan", {"z": 0.2, **start_of(Rotation.from_euler("x", math.pi / 2 - 0.4), (-9.0, 0, 0))}, 3.0, 0.01, "totalEnergy", "z", "q0", "q1", "q2", "q3")
@@ -146,6 +164,6 @@ def indicators_of_car(folder, kind, angle):
 
 
 def test_wheels_of_a_urdf(tmp_path):
-    """A cylinder about the axis of a joint without limits touches with its rims alone; each of the other 16 points has two indicators."""
+    """A cylinder about the axis of a joint without limits touches with its rims alone. Each of 16 other points has two indicators, and the tilt has one."""
     wheel = indicators_of_car(tmp_path, "continuous", math.pi / 2)
-    assert indicators_of_car(tmp_path, "revolute", math.pi / 2) == indicators_of_car(tmp_path, "continuous", 0) == wheel + 32
+    assert indicators_of_car(tmp_path, "revolute", math.pi / 2) == indicators_of_car(tmp_path, "continuous", 0) == wheel + 33

@@ -15,18 +15,23 @@ enum { END_POINTS = 8, STANDING_POINTS = 2 * END_POINTS, CYLINDER_ENDS = 2, MOST
  * A rim's lowest point has no direction where a cylinder stands upright on the plane. Let y be the square of the sine of
  * its tilt over that of least_sine. Below y = 1 the rim reaches below its centre by 3/8 + 3/4 y - y^2/8, in units of
  * least_sine times the radius. That has the value and two derivatives of the sine at y = 1, and its lowest point is
- * never farther from the axis than the radius.
+ * never farther from the axis than the radius. A wheel may lie on that dome, which is wider then.
  */
-static double least_sine(bool is_rigid) {
-  return is_rigid ? 0.00025 : 0.0025;
+static double least_sine(const struct ContactShape *shape, bool is_rigid) {
+  return shape->stands && is_rigid ? 0.00025 : 0.0025;
 }
 
 /*
- * Points on which a cylinder stands rise with its tilt, and so touch nothing while it rolls. Rigid ones rise by
- * lift y less extension, in the same unit. So they are lower than the ends, and the middles of the ends touch nothing.
- * Compliant ones overlap by more than that. They rise by soft_lift times the fourth power of the sine, in radii.
+ * Points on which a rigid cylinder stands rise with its tilt by lift y less extension, in the same unit. So they touch
+ * nothing while it rolls, and upright the middles of its ends touch nothing.
  */
-static const double extension = 0.4, lift = 0.5, soft_lift = 0.4;
+static const double extension = 0.4, lift = 0.5;
+
+/*
+ * Compliant ones overlap by more than that. They rise by soft_lift times the fourth power of the sine, in radii. Rims
+ * rise by recess (1 - z)^2, with the square z of the sine over recessed_sine, up to z = 1.
+ */
+static const double soft_lift = 0.4, recess = 0.004, recessed_sine = 0.3;
 
 /* Centres of balls of a common radius; the contact points of a shape with a plane are on these balls. */
 struct BallCentres {
@@ -129,11 +134,13 @@ struct HeightByTilt {
 
 /* Returns the height of a rim's lowest point above its centre. */
 static struct HeightByTilt height_of_rim(const struct ShapePair *pair, Node squared_sine) {
-  double least = least_sine(pair->is_rigid), square = least * least;
+  double least = least_sine(pair->first->shape, pair->is_rigid), square = least * least;
   struct Graph *graph = pair->graph;
-  Node sine = power_number(graph, squared_sine, 0.5), y = scale(graph, 1.0 / square, squared_sine);
+  Node y = scale(graph, 1.0 / square, squared_sine);
   Node excess = subtract(graph, squared_sine, graph_constant(graph, square));
   Node is_tilted = branch_of(pair->scope, excess, "the tilt of the cylinder", pair->line);
+  /* The root is that of a positive number even where it is not chosen. */
+  Node sine = power_number(graph, choose_node(graph, is_tilted, squared_sine, graph_constant(graph, square)), 0.5);
   Node reach = add(graph, graph_constant(graph, 0.375), scale(graph, 0.75, y));
   reach = subtract(graph, reach, scale(graph, 0.125, power_number(graph, y, 2.0)));
   Node slope = subtract(graph, graph_constant(graph, 0.75), scale(graph, 0.25, y));
@@ -142,13 +149,23 @@ static struct HeightByTilt height_of_rim(const struct ShapePair *pair, Node squa
   return (struct HeightByTilt){negate(graph, reach), negate(graph, slope)};
 }
 
+/* Returns how far the rims of a compliant cylinder that stands on other points rise. */
+static struct HeightByTilt recess_of_rim(const struct ShapePair *pair, Node squared_sine) {
+  const double square = recessed_sine * recessed_sine;
+  struct Graph *graph = pair->graph;
+  Node above = subtract(graph, ONE, scale(graph, 1.0 / square, squared_sine));
+  above = piecewise_function(pair->scope, MAXIMUM, above, ZERO, pair->line);
+  return (struct HeightByTilt){scale(graph, recess, power_number(graph, above, 2.0)),
+                               scale(graph, -4.0 * recess / square, above)};
+}
+
 /* Returns how far the points on which a cylinder stands rise. */
 static struct HeightByTilt rise_of_standing_points(const struct ShapePair *pair, Node squared_sine) {
   struct Graph *graph = pair->graph;
   if (!pair->is_rigid)
     return (struct HeightByTilt){scale(graph, soft_lift, power_number(graph, squared_sine, 2.0)),
                                  scale(graph, 4.0 * soft_lift, squared_sine)};
-  double least = least_sine(pair->is_rigid);
+  double least = least_sine(pair->first->shape, true);
   Node rise = scale(graph, lift / least, squared_sine);
   return (struct HeightByTilt){subtract(graph, rise, graph_constant(graph, extension * least)),
                                graph_constant(graph, 2.0 * lift / least)};
@@ -161,6 +178,10 @@ void rim_contacts(const struct ShapePair *pair, struct ContactPoints *contacts) 
   across.along[shape->axis] = ZERO;
   Node squared_sine = vector_dot(graph, across, across);
   struct HeightByTilt rim = height_of_rim(pair, squared_sine), standing = rise_of_standing_points(pair, squared_sine);
+  if (shape->stands && !pair->is_rigid) {
+    struct HeightByTilt rise = recess_of_rim(pair, squared_sine);
+    rim = (struct HeightByTilt){add(graph, rim.height, rise.height), add(graph, rim.gradient, rise.gradient)};
+  }
   across = matrix_apply(graph, &shape->rotation, across);
   plane_contacts(pair, contacts);
   for (size_t i = 0; i < contacts->count; i++) {

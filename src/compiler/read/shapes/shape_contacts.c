@@ -87,10 +87,11 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
               shapes[0]->name, shapes[1]->name, type);
     return false;
   }
-  report_at(reader, node,
-            "there is no <contact> between such shapes as '%s' and '%s'; expected a sphere or a plane as one of them, two "
-            "capsules, or a capsule and a box",
-            shapes[0]->name, shapes[1]->name);
+  report_at(
+      reader, node,
+      "there is no <contact> between such shapes as '%s' and '%s'; expected a sphere or a plane as one of them, two "
+      "capsules, or a capsule and a box",
+      shapes[0]->name, shapes[1]->name);
   return false;
 }
 
