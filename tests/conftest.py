@@ -11,7 +11,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import fmi3  # noqa: E402
 import fmu  # noqa: E402
+import sizes as size_table  # noqa: E402
 from linked import sizes  # noqa: E402
+
+
+def pytest_addoption(parser):
+    parser.addoption("--renew-sizes", action="store_true", help="write measured sizes into tests/sizes.csv, which holds those of the last release; without -n")
 
 
 def pytest_generate_tests(metafunc):
@@ -81,6 +86,12 @@ def created(kind):
 def open_fmu():
     """Yield a function that creates instances of FMI 2.0, which are freed after the test."""
     yield from created(fmu.Instance)
+
+
+@pytest.fixture
+def check_size(request):
+    """A function that compares a size with that of the last release, or writes it into the table with --renew-sizes."""
+    return size_table.renew if request.config.getoption("--renew-sizes") else size_table.check
 
 
 @pytest.fixture

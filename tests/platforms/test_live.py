@@ -468,9 +468,9 @@ def test_short_experiments_and_large_numbers(browser, page_file):
         page.click("#reset")
 
 
-def test_size(page_file):
-    """Sizes with the renderer and without, in bytes."""
+def test_size(page_file, check_size):
     text = page_file("DoublePendulum").read_text(encoding="utf-8")
     renderer = len(json.loads(re.search('<script id="data" type="application/json">(.*?)</script>', text, re.S)[1])["renderer"])
-    assert len(text) < 900_000 and len(text) - renderer < 156_000
+    check_size("DoublePendulum", "live page", len(text))
+    check_size("DoublePendulum", "live page without its renderer", len(text) - renderer)
     assert not re.search(r"""(src|href)=["']?(https?:)?//""", text)

@@ -22,7 +22,6 @@ from fmpy.fmi2 import (
 from building import BUILD, LAGC, ROOT, build_systems, built_by_tests  # noqa: F401, for tests that import from here
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
-LONGEST_EDITOR = 1_060_000  # characters of a page for editing, with lagc, the runtime and three.js
 
 
 def all_names():
