@@ -3,6 +3,7 @@
 #include "expressions.h"
 #include "mechanics/mass_matrix/mass_elements.h"
 #include "mechanics/mass_matrix/pivots.h"
+#include "mechanics/mass_matrix/rotated.h"
 
 enum { COORDINATES = 12, ELEMENTS = COORDINATES * (COORDINATES + 1) / 2 };
 
@@ -159,12 +160,64 @@ static void test_scales_of_pivots(void **state) {
   }
 }
 
+/* Returns the rotation by x about an axis; as numbers: the same, for a value of x. */
+static struct Matrix rotation_about(struct Expressions *e, int axis, double x, double numbers[3][3]) {
+  int j = (axis + 1) % 3, k = (axis + 2) % 3;
+  struct Matrix rotation = {{{{ZERO, ZERO, ZERO}}, {{ZERO, ZERO, ZERO}}, {{ZERO, ZERO, ZERO}}}};
+  memset(numbers, 0, 9 * sizeof(double));
+  rotation.row[axis].along[axis] = ONE;
+  rotation.row[j].along[j] = rotation.row[k].along[k] = parse(e, "cos(x)");
+  rotation.row[k].along[j] = parse(e, "sin(x)");
+  rotation.row[j].along[k] = parse(e, "-sin(x)");
+  numbers[axis][axis] = 1;
+  numbers[j][j] = numbers[k][k] = cos(x);
+  numbers[k][j] = sin(x);
+  numbers[j][k] = -sin(x);
+  return rotation;
+}
+
+/* Counts the products from a node on, without those with numbers, such as -1. */
+static size_t count_products(const struct Graph *graph, size_t first) {
+  size_t count = 0;
+  for (size_t i = first; i < graph->count; i++) {
+    const struct Vertex *vertex = &graph->vertices[i];
+    count += vertex->operation == MULTIPLY && graph->vertices[vertex->left].operation != CONSTANT &&
+             graph->vertices[vertex->right].operation != CONSTANT;
+  }
+  return count;
+}
+
+/* R M R^T for a rotation about each axis: four products for the block across, and four for each of two pairs. */
+static void test_rotations_about_axes(void **state) {
+  (void)state;
+  static const char *const texts[3][3] = {
+      {"y", "2*z", "1 + y"}, {"3 + z", "y^2", "z^2"}, {"y - z", "sin(y)", "sin(z)"}};
+  const double x = 0.7, y = -1.3, z = 2.1;
+  const double m[3][3] = {{y, 2 * z, 1 + y}, {3 + z, y * y, z * z}, {y - z, sin(y), sin(z)}};
+  for (int axis = 0; axis < 3; axis++) {
+    struct Expressions e = expressions_create();
+    double r[3][3];
+    struct Matrix rotation = rotation_about(&e, axis, x, r), matrix;
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) matrix.row[i].along[j] = parse(&e, texts[i][j]);
+    size_t before = e.graph->count;
+    struct Matrix result = matrix_rotated(e.graph, &rotation, &matrix);
+    assert_in_range(count_products(e.graph, before), 1, 12);
+    for (int i = 0; i < 3; i++)
+      for (int j = 0; j < 3; j++) {
+        double expected = 0;
+        for (int k = 0; k < 3; k++)
+          for (int l = 0; l < 3; l++) expected += r[i][k] * m[k][l] * r[j][l];
+        assert_true(fabs(value_at(&e, result.row[i].along[j], x, y, z) - expected) < 1e-14);
+      }
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_components),
-      cmocka_unit_test(test_components_of_a_chain),
-      cmocka_unit_test(test_symbolic_factors),
-      cmocka_unit_test(test_scales_of_pivots),
+      cmocka_unit_test(test_components),           cmocka_unit_test(test_components_of_a_chain),
+      cmocka_unit_test(test_symbolic_factors),     cmocka_unit_test(test_scales_of_pivots),
+      cmocka_unit_test(test_rotations_about_axes),
   };
   return cmocka_run_group_tests_name("inertia", tests, NULL, NULL);
 }

@@ -4,7 +4,7 @@ Tests the tests by mutation: scripts/checks/faults [--sample N] [--seed S] [--ch
 What is cheapest comes first for each mutant:
 1. the tests in C;
 2. for lagc, the build of the systems whose generated files differ from those of lagc without the mutant;
-3. the modules of tests that call the mutant's function, the fastest and most specific ones first, until one fails.
+3. the modules of tests that call the mutant's function, the fastest first, until one fails.
 A mutant that is not detected is printed with its change.
 """
 
@@ -28,7 +28,7 @@ TABLE = ROOT / "build" / "faults.csv"
 SOURCES = ["src/compiler", "src/import", "src/runtime", "src/ensemble", "modelDescription"]
 # Without platforms, whose tests need browsers, other compilers and emulators.
 ROOMS = ["compiler", "language", "mechanics", "space", "switching", "solvers", "fmi", "scripts"]
-REBUILT = 6  # FMUs that are derived anew, of those that a mutant of lagc changes
+REBUILT = 6  # systems that are built anew at first, of those that a mutant of lagc changes; the shortest ones
 CORES = os.cpu_count()
 NO_TESTS = 5  # exit code of pytest
 KILLED = -9
@@ -107,14 +107,16 @@ class Baseline:
         return time.monotonic() - started, failing, {int(path.name) for path in folder.iterdir()}
 
     def modules_of(self, number, successes):
-        """Modules that call the mutant's function: first those that detected mutants of its file, then by time and specificity."""
+        """Modules that call the mutant's function: first those that detected mutants of its file, then the fastest."""
         called = [module for module in self.modules if number in self.calls[module]]
-        return sorted(called, key=lambda module: (-successes.get(module, 0), self.seconds[module] * (1 + len(self.calls[module]))))
+        return sorted(called, key=lambda module: (-successes.get(module, 0), self.seconds[module]))
 
-    def detects(self, module, number):
+    def failure(self, module, number):
+        """Return the first test of a module that fails with a mutant, or the module if no test is named; "" if all pass."""
         words = [word for test in self.failing[module] for word in ("--deselect", test)]
-        _, code = pytest(module, {"PLANTED_FAULT": str(number)}, 30 + 4 * self.seconds[module], "-x", *words)
-        return code not in (0, NO_TESTS)
+        output, code = pytest(module, {"PLANTED_FAULT": str(number)}, 30 + 4 * self.seconds[module], "-x", *words)
+        named = re.search(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", output, re.MULTILINE)
+        return "" if code in (0, NO_TESTS) else named[1] if named else module
 
 
 class Systems:
@@ -158,18 +160,25 @@ class Systems:
         return not any(codes)
 
 
-def detected_in_modules(number, baseline, successes, limit):
-    """Return the module that detects a mutant, "time limit" if not all could run within the seconds, or "none"."""
+def detected_in_modules(number, baseline, systems, old, successes, limit):
+    """
+    Return the test that detects a mutant, "time limit" if not all could run within the seconds, or "none". `old` lists systems whose FMUs
+    the mutant would change. They are built when a test of one fails, which may have compared its FMU with the output of lagc.
+    """
     started, modules = time.monotonic(), baseline.modules_of(number, successes)
     with ThreadPoolExecutor(CORES) as pool:
         for first in range(0, len(modules), CORES):
             if time.monotonic() - started > limit:
                 return "time limit"
             group = modules[first : first + CORES]
-            found = [module for module, detects in zip(group, pool.map(lambda module: baseline.detects(module, number), group)) if detects]
-            if found:
-                successes[found[0]] = successes.get(found[0], 0) + 1
-                return found[0]
+            for module, test in zip(group, pool.map(lambda module: baseline.failure(module, number), group)):
+                if any(name in test.partition("[")[2] for name in old):
+                    systems.rebuild(old, str(number))
+                    old.clear()
+                    test = baseline.failure(module, number)
+                if test:
+                    successes[module] = successes.get(module, 0) + 1
+                    return test
     return "none"
 
 
@@ -177,21 +186,22 @@ def detected_by(number, file, baseline, systems, successes, limit):
     """Return what detects a mutant, "time limit" or "none"."""
     if not ctest({"PLANTED_FAULT": str(number)}, 120):
         return "ctest"
-    rebuilt = []
+    differ = []
     if not file.startswith(("src/runtime", "src/ensemble")):
         now = systems.digests(str(number))
         failing = [name for name in now if now[name] is None]
         if failing:
             return f"lagc of {failing[0]}"
         differ = [name for name in now if now[name] != systems.expected[name]]
-        rebuilt = sorted(differ, key=lambda name: (systems.derived(name) / "system.c").stat().st_size)[:REBUILT]
+        differ.sort(key=lambda name: (systems.derived(name) / "system.c").stat().st_size)
+    old = differ[REBUILT:]
     try:
-        if rebuilt and not systems.rebuild(rebuilt, str(number)):
+        if differ and not systems.rebuild(differ[:REBUILT], str(number)):
             return "build"
-        return detected_in_modules(number, baseline, successes, limit)
+        return detected_in_modules(number, baseline, systems, old, successes, limit)
     finally:
-        if rebuilt:
-            systems.rebuild(rebuilt, "0")
+        if differ:
+            systems.rebuild([name for name in differ if name not in old], "0")
 
 
 def difference(file, mutant):

@@ -479,7 +479,10 @@ def test_terminals_are_drawn():
     assert len(places) == 3 and all(place["x1"] < 100 < place["x2"] for place in places)
     heights = sorted((place["y1"], place["y2"]) for place in places)
     assert heights[0][0] > -100 and heights[-1][1] < 100 and all(below[1] < above[0] for below, above in zip(heights, heights[1:]))
-    assert (folder / "flange.png").read_bytes()[:4] == b"\x89PNG" and etree.parse(folder / "flange.svg").getroot().tag.endswith("svg")
+    assert (folder / "flange.png").read_bytes()[:4] == b"\x89PNG"
+    circles = [[float(circle.get(name)) for name in ("cx", "cy", "r")] for circle in etree.parse(folder / "flange.svg").getroot()]
+    (x, y, rim), disk = circles  # a disk within a dark rim, in the middle of 160 x 160
+    assert (x, y) == (80, 80) and disk[:2] == [80, 80] and 0 < disk[2] < rim < 80
     assert not list((fmi3.unpacked("SimplePendulum") / "terminalsAndIcons").glob("flange.*"))
 
 

@@ -76,6 +76,14 @@ def test_limits(text, message, tmp_path):
     assert not (tmp_path / "out" / "system.c").exists()
 
 
+def test_the_longest_file(tmp_path):
+    """A file of the 10,000,000 bytes that the message names is read."""
+    blanks = 10_000_000 - len(SYSTEM.format("<potential>x</potential>"))
+    result = compile_with("<potential>" + " " * blanks + "x</potential>", tmp_path)
+    assert (tmp_path / "system.xml").stat().st_size == 10_000_000
+    assert (result.returncode, result.stderr) == (0, "")
+
+
 def test_derivatives_of_a_long_sum_in_a_loop(tmp_path):
     """lagc computes the derivatives of a shared sum once."""
     text = '<define name="long">sum(j, 1, 30000, sin(j*x))</define>' + loops(("1", "10000"), content="<dissipation>i*der(long)</dissipation>")

@@ -16,9 +16,9 @@ ROTOR = """<robot name="rotor">
 <dynamics damping="0" spring_stiffness="2" spring_reference="0.3"/></joint>
 </robot>""".format('<inertial><mass value="1"/><inertia ixx="0.5" iyy="0.5" izz="0.5" ixy="0" ixz="0" iyz="0"/></inertial>')
 WHEEL = """<mujoco model="wheel">
-<compiler inertiagrouprange="0 1"/><option gravity="0 0 0" actuatorgroupdisable="2 7"/><default><motor group="7"/></default>
+<compiler inertiagrouprange="1 1"/><option gravity="0 0 0" actuatorgroupdisable="2 7"/><default><motor group="7"/></default>
 <worldbody><body name="wheel"><joint name="hinge" axis="0 1 0"/>
-<geom type="box" size="0.1 0.2 0.3" mass="3" group="1"/><geom size="0.5" pos="0.5 0 0" mass="9" group="2"/></body></worldbody>
+<geom type="box" size="0.1 0.2 0.3" mass="3" group="1"/><geom size="0.5" pos="0.5 0 0" mass="9" group="2"/><geom size="0.3" pos="0 0 0.5" mass="7"/></body></worldbody>
 <actuator><motor name="one" joint="hinge" group="1"/><motor name="two" joint="hinge" group="2"/><position name="three" joint="hinge" group="2" kp="5"/><motor name="four" joint="hinge"/></actuator>
 </mujoco>"""
 SYSTEMS = {
@@ -42,7 +42,7 @@ def test_a_spring_and_an_effort_that_is_not_known(torque, open_fmu):
 
 
 def test_groups_of_actuators_and_geoms(open_fmu):
-    """Actuators of disabled groups have no effect; geoms of other groups have no mass. The box has m (a^2 + c^2)/3 = 0.1 kg.m2."""
+    """Actuators of disabled groups have no effect; geoms of other groups have no mass, nor have those without a group, which is 0. The box has m (a^2 + c^2)/3 = 0.1 kg.m2."""
     controls = {f"r.{name}_control": value for name, value in (("one", 0.1), ("two", 5.0), ("three", 4.0), ("four", 3.0))}
     instance = open_fmu("Wheel").initialize(controls, tolerance=1e-10)
     instance.run(1.0, 0.1)
