@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 
 INCLUDE = re.compile(r'#include "([a-z0-9_/]+\.[ch])"\n')
+LIBRARY = re.compile(r"#include <([a-z/]+\.h)>\n")
 NAMING = {2: "FMI 2.0.4, section 2.1.1", 3: "FMI 3.0.2, section 2.2.2"}  # sections of the standards that define the prefix
 HEAD = """/*
  * {license}
@@ -39,14 +40,26 @@ HEAD = """/*
 
 
 def included_once(text, root, included):
-    """Replace the first #include of each project file by its text, and delete the others; `included` is the set of files so far."""
+    """
+    Replace the first #include of each project file by its text, and delete the others; `included` is the set of files so far.
+
+    Files of the runtime lose the repeated ones of C's library. Those of include/ keep them, since they are compiled without the runtime over lanes.
+    """
+
+    def library(found):
+        is_new = found[1] not in included
+        included.add(found[1])
+        return found[0] if is_new else ""
 
     def content(found):
         if found[1] in included:
             return ""
         included.add(found[1])
         file = next(path for path in (root / "include" / found[1], root / "src" / "runtime" / found[1]) if path.exists())
-        return included_once(file.read_text(encoding="utf-8").replace("#pragma once\n", ""), root, included)
+        part = file.read_text(encoding="utf-8").replace("#pragma once\n", "")
+        if file.is_relative_to(root / "src"):
+            part = LIBRARY.sub(library, part)
+        return included_once(part, root, included)
 
     return INCLUDE.sub(content, text)
 
@@ -58,6 +71,8 @@ def one_file(root, global_names, version, system, name):
     layer = "".join(f'#include "{path.relative_to(runtime).as_posix()}"\n' for path in sorted((runtime / f"fmi{version}").glob("*.c")))
     text = system.read_text(encoding="utf-8").replace("#ifdef FMU_IN_ONE_FILE\n", f"#ifdef FMU_IN_ONE_FILE\n{layer}")
     text = included_once(text, root, set())
+    text = re.sub(r"(?<=\S) +(?=/\*|\\\n)", " ", text)  # aligned comments and continued lines
+    text = re.sub(r"\n{3,}", "\n\n", text)
     symbols = sorted({*re.findall(r"([A-Za-z0-9_]+) [A-Z] ", global_names.read_text()), "lagrangian"})
     functions = [symbol for symbol in symbols if symbol.startswith(f"fmi{version}")]
     names = [symbol for symbol in symbols if not re.match("fmi[0-9]", symbol) and symbol in text]

@@ -208,21 +208,18 @@ static void set_value(struct Instance *instance, const struct ScalarVariable *va
     instance->parameter_constants_are_stale = true;
 }
 
-enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value) {
-  enum Status status = STATUS_DONE;
-  for (size_t i = 0; i < count; i++) status = worse(status, check_value(instance, reference[i], value[i], TYPE_REAL));
-  if (status != STATUS_DONE) return status;
-  for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
-  if (is_before_start(instance)) initial_state_follow(instance);
-  return STATUS_DONE;
+static double number_of_type(const void *value, size_t index, enum VariableType type) {
+  return type == TYPE_REAL ? ((const double *)value)[index] : ((const int *)value)[index];
 }
 
-enum Status values_set_whole(struct Instance *instance, const unsigned *reference, size_t count, const int *value,
-                             enum VariableType type) {
+enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const void *value,
+                       enum VariableType type) {
   enum Status status = STATUS_DONE;
-  for (size_t i = 0; i < count; i++) status = worse(status, check_value(instance, reference[i], value[i], type));
+  for (size_t i = 0; i < count; i++)
+    status = worse(status, check_value(instance, reference[i], number_of_type(value, i, type), type));
   if (status != STATUS_DONE) return status;
-  for (size_t i = 0; i < count; i++) set_value(instance, &lagrangian.variables[reference[i]], value[i]);
+  for (size_t i = 0; i < count; i++)
+    set_value(instance, &lagrangian.variables[reference[i]], number_of_type(value, i, type));
   if (is_before_start(instance)) initial_state_follow(instance);
   return STATUS_DONE;
 }

@@ -16,12 +16,9 @@ enum Status values_get_counts(struct Instance *instance, const unsigned *referen
 /* Does nothing, for types without variables: any reference is an error. */
 enum Status values_none(void *component, enum FunctionClass function, size_t count, const char *name);
 
-/* Sets Real variables: all or none. */
-enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const double *value);
-
-/* Sets Integer or Boolean variables: all or none. */
-enum Status values_set_whole(struct Instance *instance, const unsigned *reference, size_t count, const int *value,
-                             enum VariableType type);
+/* Sets variables of a type: all or none. value: doubles for TYPE_REAL, else of the type int. */
+enum Status values_set(struct Instance *instance, const unsigned *reference, size_t count, const void *value,
+                       enum VariableType type);
 
 /* Sets time derivatives of inputs for the next communication step; all or none. */
 enum Status values_set_input_derivatives(struct Instance *instance, const unsigned *reference, size_t count,

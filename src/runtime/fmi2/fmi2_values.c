@@ -37,7 +37,7 @@ fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Real value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return status_of(values_set(instance, vr, nvr, value));
+  return status_of(values_set(instance, vr, nvr, value, TYPE_REAL));
 }
 
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, fmi2Boolean value[]) {
@@ -49,13 +49,13 @@ fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Integer value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_INTEGER));
+  return status_of(values_set(instance, vr, nvr, value, TYPE_INTEGER));
 }
 
 fmi2Status fmi2SetBoolean(fmi2Component c, const fmi2ValueReference vr[], size_t nvr, const fmi2Boolean value[]) {
   struct Instance *instance = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, value);
   if (instance == NULL) return fmi2Error;
-  return status_of(values_set_whole(instance, vr, nvr, value, TYPE_BOOLEAN));
+  return status_of(values_set(instance, vr, nvr, value, TYPE_BOOLEAN));
 }
 
 /* There are no variables of the type String. */
@@ -85,18 +85,14 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                        const fmi2Integer order[], const fmi2Real value[]) {
-  struct Instance *instance = enter(c, FUNCTION_SET_INPUT_DERIVATIVES, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, "vr") || !check_array(instance, order, nvr, "order") ||
-      !check_array(instance, value, nvr, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_SET_INPUT_DERIVATIVES, __func__, vr, nvr, value);
+  if (instance == NULL || !check_array(instance, order, nvr, "order")) return fmi2Error;
   return status_of(values_set_input_derivatives(instance, vr, nvr, order, value));
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference vr[], size_t nvr,
                                         const fmi2Integer order[], fmi2Real value[]) {
-  struct Instance *instance = enter(c, FUNCTION_GET_OUTPUT_DERIVATIVES, __func__);
-  if (instance == NULL || !check_array(instance, vr, nvr, "vr") || !check_array(instance, order, nvr, "order") ||
-      !check_array(instance, value, nvr, "value"))
-    return fmi2Error;
+  struct Instance *instance = enter_with_values(c, FUNCTION_GET_OUTPUT_DERIVATIVES, __func__, vr, nvr, value);
+  if (instance == NULL || !check_array(instance, order, nvr, "order")) return fmi2Error;
   return status_without_discard(instance, output_derivatives(instance, vr, nvr, order, value));
 }

@@ -32,7 +32,7 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference vr[], size_t 
                           size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_SET_REAL, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_in_mode(c, values_set(c, references, nValues, values));
+  return status_in_mode(c, values_set(c, references, nValues, values, TYPE_REAL));
 }
 
 /* Statistics have the type Int64. */
@@ -56,7 +56,7 @@ fmi3Status fmi3SetInt32(fmi3Instance c, const fmi3ValueReference vr[], size_t nv
                         size_t nValues) {
   const unsigned *references = enter_with_values(c, FUNCTION_SET_DISCRETE, __func__, vr, nvr, values, nValues);
   if (references == NULL) return fmi3Error;
-  return status_of(values_set_whole(c, references, nValues, values, TYPE_INTEGER));
+  return status_of(values_set(c, references, nValues, values, TYPE_INTEGER));
 }
 
 fmi3Status fmi3GetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t nvr, fmi3Boolean values[],
@@ -77,5 +77,5 @@ fmi3Status fmi3SetBoolean(fmi3Instance c, const fmi3ValueReference vr[], size_t 
   int *whole = reserve_workspace(c, WORKSPACE_VALUES, nValues, sizeof *whole);
   if (whole == NULL) return fmi3Error;
   for (size_t i = 0; i < nValues; i++) whole[i] = values[i];
-  return status_of(values_set_whole(c, references, nValues, whole, TYPE_BOOLEAN));
+  return status_of(values_set(c, references, nValues, whole, TYPE_BOOLEAN));
 }
