@@ -33,6 +33,7 @@
 #include "detection/indicators.h"
 #include "detection/search_interval.h"
 #include "instance/time_laws.h"
+#include "support/arena.h"
 
 /*
  * Intervals that a search may examine. An approximate search (BEFORE_IT) gives up earlier and leaves them to the exact
@@ -66,22 +67,26 @@ struct Search {
   double floor;     /* value to which the present indicator may fall without an event */
 };
 
+/* The samples of search_interval.h come first. */
+static size_t lay_out_search(struct Search *search, double *work) {
+  struct Arena arena = {(uintptr_t)work};
+  arena_take(&arena, search_interval_sample_count(), sizeof(double));
+  size_t count = indicator_count(lagrangian.switches);
+  ARENA_NUMBERS(&arena, lagrangian.state_count, &search->state, &search->rounded);
+  ARENA_NUMBERS(&arena, count, &search->values, &search->error_bound, &search->exact);
+  ARENA_NUMBERS(&arena, CHEBYSHEV_NODES * count, &search->samples, &search->projected);
+  return (arena.next - (uintptr_t)work) / sizeof(double);
+}
+
 size_t search_work_count(void) {
-  size_t search = search_interval_sample_count() + 2 * lagrangian.state_count +
-                  (2 * CHEBYSHEV_NODES + 3) * indicator_count(lagrangian.switches);
-  size_t interval = search_interval_work_count();
-  return search > interval ? search : interval;
+  struct Search search;
+  size_t own = lay_out_search(&search, NULL), interval = search_interval_work_count();
+  return own > interval ? own : interval;
 }
 
 static struct Search search_of(struct Instance *instance) {
-  size_t count = indicator_count(lagrangian.switches);
-  struct Search search = {.instance = instance, .state = instance->switching_work + search_interval_sample_count()};
-  search.rounded = search.state + lagrangian.state_count;
-  search.values = search.rounded + lagrangian.state_count;
-  search.samples = search.values + count;
-  search.error_bound = search.samples + CHEBYSHEV_NODES * count;
-  search.exact = search.error_bound + count;
-  search.projected = search.exact + count;
+  struct Search search = {.instance = instance};
+  lay_out_search(&search, instance->switching_work);
   return search;
 }
 

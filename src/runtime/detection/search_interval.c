@@ -26,6 +26,7 @@
 #include "evaluation/services.h"
 #include "detection/chebyshev.h"
 #include "detection/indicators.h"
+#include "support/arena.h"
 
 /* Largest ratio of the last coefficients to the range of a polynomial that describes the motion. */
 static const double resolved_motion = 1e-3;
@@ -54,22 +55,26 @@ static const double *sample_states(struct Instance *instance, double from, doubl
   return solver_interpolate(lagrangian.solver, instance, times, CHEBYSHEV_NODES, states) ? states : NULL;
 }
 
+static size_t lay_out_interval(struct SearchInterval *interval, double *work) {
+  size_t states = lagrangian.state_count, accelerations = lagrangian.switches->watched_acceleration_count;
+  struct Arena arena = {(uintptr_t)work};
+  ARENA_NUMBERS(&arena, CHEBYSHEV_NODES * states, &interval->states);
+  ARENA_NUMBERS(&arena, CHEBYSHEV_NODES * accelerations, &interval->accelerations);
+  ARENA_NUMBERS(&arena, states + accelerations, &interval->rounded);
+  ARENA_TAKE(&arena, interval->x, states);
+  ARENA_TAKE(&arena, interval->input, lagrangian.input_count);
+  ARENA_TAKE(&arena, interval->work, lagrangian.switches->watched_rows);
+  return (arena.next - (uintptr_t)work) / sizeof(double);
+}
+
 size_t search_interval_work_count(void) {
-  const struct SwitchTable *switches = lagrangian.switches;
-  if (switches->watched_limit == NULL) return 0;
-  return search_interval_sample_count() + (CHEBYSHEV_NODES + 1) * switches->watched_acceleration_count +
-         lagrangian.state_count +
-         SERIES_LENGTH * (lagrangian.state_count + lagrangian.input_count + switches->watched_rows);
+  struct SearchInterval interval;
+  return lagrangian.switches->watched_limit == NULL ? 0 : lay_out_interval(&interval, NULL);
 }
 
 static struct SearchInterval interval_of(struct Instance *instance, double from, double to) {
-  const struct SwitchTable *switches = lagrangian.switches;
-  struct SearchInterval interval = {.instance = instance, .from = from, .to = to, .states = instance->switching_work};
-  interval.accelerations = interval.states + CHEBYSHEV_NODES * lagrangian.state_count;
-  interval.rounded = interval.accelerations + CHEBYSHEV_NODES * switches->watched_acceleration_count;
-  interval.x = (Series *)(interval.rounded + lagrangian.state_count + switches->watched_acceleration_count);
-  interval.input = interval.x + lagrangian.state_count;
-  interval.work = interval.input + lagrangian.input_count;
+  struct SearchInterval interval = {.instance = instance, .from = from, .to = to};
+  lay_out_interval(&interval, instance->switching_work);
   return interval;
 }
 

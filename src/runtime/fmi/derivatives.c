@@ -8,6 +8,7 @@
 #include "fmi/reverse_sweep.h"
 #include "instance/initial_state.h"
 #include "stepping/reading.h"
+#include "support/arena.h"
 
 /* A direction and the derivatives along it; the arrays are parts of instance->work. */
 struct Direction {
@@ -18,13 +19,12 @@ struct Direction {
 };
 
 static struct Direction direction_create(struct Instance *instance) {
-  struct Direction direction = {.derivative = instance->work};
-  direction.derivative_along = direction.derivative + lagrangian.state_count;
-  direction.state = direction.derivative_along + lagrangian.state_count;
-  direction.input = direction.state + lagrangian.state_count;
-  direction.parameter = direction.input + lagrangian.input_count;
-  size_t count = 3 * lagrangian.state_count + lagrangian.input_count + lagrangian.parameter_count;
-  memset(instance->work, 0, count * sizeof *instance->work);
+  struct Direction direction = {.acceleration = NULL};
+  struct Arena arena = {(uintptr_t)instance->work};
+  ARENA_NUMBERS(&arena, lagrangian.state_count, &direction.derivative, &direction.derivative_along, &direction.state);
+  ARENA_NUMBERS(&arena, lagrangian.input_count, &direction.input);
+  ARENA_NUMBERS(&arena, lagrangian.parameter_count, &direction.parameter);
+  memset(instance->work, 0, arena.next - (uintptr_t)instance->work);
   direction.seed = (struct Seed){.state = direction.state, .input = direction.input, .parameter = direction.parameter};
   return direction;
 }

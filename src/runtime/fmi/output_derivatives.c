@@ -6,6 +6,7 @@
 #include "fmi/check.h"
 #include "fmi/derivatives.h"
 #include "stepping/reading.h"
+#include "support/arena.h"
 
 /* Series about the present time; the rows are parts of one block. */
 struct OutputSeries {
@@ -17,22 +18,15 @@ static size_t larger(size_t a, size_t b) {
   return a > b ? a : b;
 }
 
-/* Allocates the rows; free expansion->state. False, after logging an error, without memory. */
-static bool expansion_create(struct Instance *instance, struct OutputSeries *expansion) {
+static size_t lay_out_expansion(struct OutputSeries *expansion, void *block) {
   size_t states = lagrangian.state_count, inputs = lagrangian.input_count;
-  size_t work = larger(lagrangian.taylor.rows, lagrangian.taylor.output_rows);
-  size_t rows = states + inputs + lagrangian.results.count + work;
-  size_t matrix = lagrangian.linear == NULL ? 0 : states * (states + inputs + 1);
-  expansion->state = instance->memory.allocate(1, rows * sizeof(Series) + matrix * sizeof(double));
-  if (expansion->state == NULL) {
-    log_error(instance, "out of memory for the derivatives of outputs");
-    return false;
-  }
-  expansion->input = expansion->state + states;
-  expansion->output = expansion->input + inputs;
-  expansion->work = expansion->output + lagrangian.results.count;
-  expansion->matrix = (double *)(expansion->work + work);
-  return true;
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_TAKE(&arena, expansion->state, states);
+  ARENA_TAKE(&arena, expansion->input, inputs);
+  ARENA_TAKE(&arena, expansion->output, lagrangian.results.count);
+  ARENA_TAKE(&arena, expansion->work, larger(lagrangian.taylor.rows, lagrangian.taylor.output_rows));
+  ARENA_NUMBERS(&arena, lagrangian.linear == NULL ? 0 : states * (states + inputs + 1), &expansion->matrix);
+  return arena.next - (uintptr_t)block;
 }
 
 /* Expands d x / dt = A x + B u + c, order by order. */
@@ -85,11 +79,13 @@ static enum Status read_from_series(struct Instance *instance, const unsigned *r
   struct OutputSeries expansion;
   int highest = 0;
   for (size_t i = 0; i < count; i++) highest = order[i] > highest ? order[i] : highest;
-  if (!expansion_create(instance, &expansion)) return STATUS_ERROR;
+  void *block = instance->memory.allocate(1, lay_out_expansion(&expansion, NULL));
+  if (block == NULL) return reject_call(instance, "out of memory for the derivatives of outputs");
+  lay_out_expansion(&expansion, block);
   enum Status status = fill_expansion(instance, highest, &expansion);
   for (size_t i = 0; i < count && status == STATUS_DONE; i++)
     status = read_derivative(instance, &expansion, &lagrangian.variables[reference[i]], order[i], &value[i]);
-  instance->memory.free(expansion.state);
+  instance->memory.free(block);
   return status;
 }
 

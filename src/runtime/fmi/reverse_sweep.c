@@ -5,22 +5,20 @@
 #include "evaluation/evaluate.h"
 #include "fmi/check.h"
 #include "instance/initial_state.h"
+#include "support/arena.h"
 
 /* Parts of one block of memory: weights of derivatives, results and states, and the gradient of the weighted sum. */
 struct Weights {
   double *derivative, *result, *state, *gradient;
 };
 
-static struct Weights weights_in(double *block) {
-  struct Weights weights = {.derivative = block};
-  weights.result = weights.derivative + lagrangian.state_count;
-  weights.state = weights.result + lagrangian.results.count;
-  weights.gradient = weights.state + lagrangian.state_count;
-  return weights;
-}
-
-static size_t known_count_of_system(void) {
-  return lagrangian.state_count + lagrangian.input_count + lagrangian.parameter_count + 1;
+static size_t lay_out_weights(struct Weights *weights, void *block) {
+  size_t states = lagrangian.state_count, knowns = states + lagrangian.input_count + lagrangian.parameter_count + 1;
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_NUMBERS(&arena, states, &weights->derivative, &weights->state);
+  ARENA_NUMBERS(&arena, lagrangian.results.count, &weights->result);
+  ARENA_NUMBERS(&arena, knowns, &weights->gradient);
+  return arena.next - (uintptr_t)block;
 }
 
 static bool is_for(const struct Instance *instance, const unsigned *unknown, size_t unknown_count) {
@@ -74,10 +72,10 @@ static enum Status sweep(struct Instance *instance, const struct Weights *weight
 
 static enum Status derivative_by_sweep(struct Instance *instance, const unsigned *unknown, size_t unknown_count,
                                        const unsigned *known, size_t known_count, const double *seed, double *value) {
-  size_t count = 2 * lagrangian.state_count + lagrangian.results.count + known_count_of_system();
-  double *block = instance->memory.allocate(count, sizeof *block);
+  struct Weights weights;
+  void *block = instance->memory.allocate(1, lay_out_weights(&weights, NULL));
   if (block == NULL) return reject_call(instance, "out of memory for the derivatives");
-  struct Weights weights = weights_in(block);
+  lay_out_weights(&weights, block);
   enum Status status = STATUS_DONE;
   for (size_t i = 0; i < unknown_count && status == STATUS_DONE; i++)
     status = add_weight(instance, &weights, unknown[i], seed[i]);

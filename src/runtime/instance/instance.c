@@ -6,15 +6,23 @@
 #include "instance/projection.h"
 #include "instance/solver.h"
 #include "instance/event_laws.h"
+#include "support/arena.h"
 
-static size_t value_count(void) {
-  return lagrangian.state_count + (1 + INPUT_ORDER) * lagrangian.input_count + lagrangian.parameter_count +
-         lagrangian.following_count;
+/* Divides the values of a snapshot, without the solver's part behind them. */
+static size_t lay_out_values(struct Instance *instance, double *values) {
+  struct Arena arena = {(uintptr_t)values};
+  ARENA_NUMBERS(&arena, lagrangian.state_count, &instance->state);
+  ARENA_NUMBERS(&arena, lagrangian.input_count, &instance->input);
+  ARENA_NUMBERS(&arena, lagrangian.parameter_count, &instance->parameter);
+  ARENA_NUMBERS(&arena, INPUT_ORDER * lagrangian.input_count, &instance->input_derivatives);
+  ARENA_NUMBERS(&arena, lagrangian.following_count, &instance->start_was_set);
+  return arena.next - (uintptr_t)values;
 }
 
 size_t fmu_state_size(void) {
+  struct Instance counted;
   bool saves = lagrangian.solver != NULL && lagrangian.solver->saved_size != NULL;
-  return sizeof(struct FmuState) + value_count() * sizeof(double) + (saves ? lagrangian.solver->saved_size() : 0);
+  return sizeof(struct FmuState) + lay_out_values(&counted, NULL) + (saves ? lagrangian.solver->saved_size() : 0);
 }
 
 /* Computes the 64-bit FNV-1a hash. */
@@ -46,43 +54,28 @@ void instance_reset(struct Instance *instance) {
   instance->reported_singularity = 0;
 }
 
-/* Accelerations and constraint forces for result(); systems without constraints use the derivatives of the state. */
-static size_t acceleration_count(void) {
-  return lagrangian.constraints.projection == NULL ? 0 : lagrangian.coordinate_count + lagrangian.constraints.count;
-}
-
-static size_t switching_work_count(void) {
-  return lagrangian.event_laws != NULL ? lagrangian.event_laws->work_count() + 2 * lagrangian.state_count : 0;
-}
-
-static size_t evaluation_count(void) {
-  return lagrangian.parameter_constants_count + lagrangian.work_count + lagrangian.following_count +
-         projection_work_count() + switching_work_count() + 2 * acceleration_count() + 3 * lagrangian.state_count +
-         3 * lagrangian.input_count + lagrangian.parameter_count + 1;
-}
-
 void instance_use(struct Instance *instance, struct FmuState *fmu_state) {
   instance->fmu_state = fmu_state;
-  instance->state = instance->fmu_state->values;
-  instance->input = instance->state + lagrangian.state_count;
-  instance->parameter = instance->input + lagrangian.input_count;
-  instance->input_derivatives = instance->parameter + lagrangian.parameter_count;
-  instance->start_was_set = instance->input_derivatives + INPUT_ORDER * lagrangian.input_count;
+  lay_out_values(instance, fmu_state->values);
   instance->saved = instance->start_was_set + lagrangian.following_count;
 }
 
-/* Divides a block of memory among the arrays. */
-static void lay_out(struct Instance *instance, double *evaluation) {
-  instance->parameter_constants = evaluation;
-  instance->point_work = instance->parameter_constants + lagrangian.parameter_constants_count;
-  instance->start_work = instance->point_work + lagrangian.work_count;
-  instance->projection_work = instance->start_work + lagrangian.following_count;
-  instance->switching_work = instance->projection_work + projection_work_count();
-  instance->acceleration = instance->switching_work + switching_work_count();
-  if (lagrangian.event_laws != NULL)
-    instance->event_state = instance->switching_work + lagrangian.event_laws->work_count();
-  instance->largest_input = instance->acceleration + 2 * acceleration_count();
-  instance->work = instance->largest_input + lagrangian.input_count;
+/* Divides the memory of evaluations. Systems without constraints find accelerations in the derivatives of the state. */
+static size_t lay_out_evaluation(struct Instance *instance, void *block) {
+  const struct Projection *constrained = lagrangian.constraints.projection;
+  const struct EventLaws *events = lagrangian.event_laws;
+  size_t states = lagrangian.state_count, rows = lagrangian.coordinate_count + lagrangian.constraints.count;
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_NUMBERS(&arena, lagrangian.parameter_constants_count, &instance->parameter_constants);
+  ARENA_NUMBERS(&arena, lagrangian.work_count, &instance->point_work);
+  ARENA_NUMBERS(&arena, lagrangian.following_count, &instance->start_work);
+  instance->projection_work = arena_take(&arena, 1, constrained != NULL ? constrained->lay_out(NULL) : 0);
+  ARENA_NUMBERS(&arena, constrained != NULL ? 2 * rows : 0, &instance->acceleration);
+  ARENA_NUMBERS(&arena, events != NULL ? events->work_count() : 0, &instance->switching_work);
+  ARENA_NUMBERS(&arena, events != NULL ? 2 * states : 0, &instance->event_state);
+  ARENA_NUMBERS(&arena, lagrangian.input_count, &instance->largest_input);
+  ARENA_NUMBERS(&arena, 3 * states + 2 * lagrangian.input_count + lagrangian.parameter_count + 1, &instance->work);
+  return arena.next - (uintptr_t)block;
 }
 
 static void free_shown(const struct Instance *instance) {
@@ -94,7 +87,7 @@ bool instance_create(struct Instance *instance, enum InterfaceType kind, const s
                      const struct Log *log) {
   *instance = (struct Instance){.memory = *memory, .log = *log, .kind = kind};
   bool shows = lagrangian.constraints.projection != NULL || lagrangian.event_laws != NULL;
-  double *evaluation = memory->allocate(evaluation_count(), sizeof *evaluation);
+  void *evaluation = memory->allocate(1, lay_out_evaluation(instance, NULL));
   struct FmuState *fmu_state = memory->allocate(1, fmu_state_size());
   if (shows) {
     instance->given = memory->allocate(1, fmu_state_size());
@@ -103,7 +96,9 @@ bool instance_create(struct Instance *instance, enum InterfaceType kind, const s
   bool has_shown = instance->given != NULL && instance->shown != NULL;
   if (fmu_state != NULL && evaluation != NULL && (!shows || has_shown)) {
     instance_use(instance, fmu_state);
-    lay_out(instance, evaluation);
+    lay_out_evaluation(instance, evaluation);
+    if (lagrangian.constraints.projection != NULL)
+      lagrangian.constraints.projection->lay_out(instance->projection_work);
     instance_reset(instance);
     return true;
   }

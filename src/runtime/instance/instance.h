@@ -117,13 +117,13 @@ struct Instance {
   double *work;                   /* of evaluations: 3 state_count + 2 input_count + parameter_count */
   double *start_work;             /* of start values: lagrangian.following_count */
   double *point_work;             /* of generated functions: lagrangian.work_count */
-  double *projection_work;        /* projection_work_count() */
-  double *switching_work;         /* event_laws->work_count() */
-  double departure;               /* the sign with which a branch at rest at 0 last left it */
-  bool uses_event_mode;           /* co-simulation: the importer handles events between steps */
-  bool stops_at_events;           /* an event ends a communication step */
-  bool lifts;                     /* the contact whose gap reached 0 in the last event lifts */
-  bool was_at_zero;               /* the last event's indicator had not left 0 before by more than rounding */
+  struct ProjectionWork *projection_work;
+  double *switching_work;               /* event_laws->work_count() */
+  double departure;                     /* the sign with which a branch at rest at 0 last left it */
+  bool uses_event_mode;                 /* co-simulation: the importer handles events between steps */
+  bool stops_at_events;                 /* an event ends a communication step */
+  bool lifts;                           /* the contact whose gap reached 0 in the last event lifts */
+  bool was_at_zero;                     /* the last event's indicator had not left 0 before by more than rounding */
   struct Scratch scratch[SCRATCH_USES]; /* workspace of events */
   double *event_state;                  /* with events: the state after the last one; then state_count of workspace */
   double *acceleration;                 /* accelerations and constraint forces for result(); the same along a seed */

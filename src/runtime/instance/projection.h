@@ -5,6 +5,8 @@
 
 /* The functions of the projection. */
 struct Projection {
+  /* Prepares a block as workspace. Returns its size; without a block only counts. */
+  size_t (*lay_out)(void *block);
   /*
    * Projects a state near the constraints onto them by the least move in the metric of M: first the coordinates, then
    * the velocities. Returns the largest change in units of the scales. Returns INFINITY if that fails; the state is
@@ -43,10 +45,3 @@ struct Projection {
 };
 
 extern const struct Projection projection;
-
-/* Returns the number of doubles of workspace of the projection. */
-static inline size_t projection_work_count(void) {
-  if (lagrangian.constraints.projection == NULL) return 0;
-  return lagrangian.coordinate_count + 4 * lagrangian.constraints.count + 3 * lagrangian.state_count + 1 +
-         indicator_count(lagrangian.switches);
-}

@@ -19,12 +19,13 @@
 #include "evaluation/services.h"
 #include "instance/snapshot.h"
 #include "instance/time_laws.h"
+#include "support/arena.h"
 
-/* State of the method. With the same step and parameters, the matrix is used again. */
+/* State of the method. With the same step and parameters, the matrix is used again. The arrays follow, aligned. */
 struct Exact {
-  size_t order;      /* 1 + INPUT_ORDER if the matrix takes input derivatives, else 1 */
-  double step;       /* of the matrix, in s; 0 if there is none */
-  double *parameter; /* of the matrix; parameter_count */
+  _Alignas(long double) size_t order; /* 1 + INPUT_ORDER if the matrix takes input derivatives, else 1 */
+  double step;                        /* of the matrix, in s; 0 if there is none */
+  double *parameter;                  /* of the matrix; parameter_count */
   /* exp(Z h) = diag(identity) + matrix: its first state_count rows, each of extended_size(order) columns. */
   double *identity, *matrix;
   double *extended, *linear;
@@ -48,44 +49,28 @@ static bool is_saved_valid(const struct FmuState *fmu_state, const void *saved) 
   return snapshot_is_finite(saved, lagrangian.state_count);
 }
 
-static void destroy(struct Instance *instance) {
-  struct Exact *exact = instance->solver_memory;
-  if (exact->generator != NULL) instance->memory.free(exact->generator);
-  solver_free_memory(instance);
-}
-
-/* Divides one block of memory among the arrays. */
-static void divide_block(struct Exact *exact, size_t size) {
-  size_t states = lagrangian.state_count, square = size * size;
-  exact->term = exact->generator + square;
-  exact->product = exact->term + square;
-  exact->sum = exact->product + square;
-  exact->parameter = (double *)(exact->sum + square);
-  exact->identity = exact->parameter + lagrangian.parameter_count;
-  exact->matrix = exact->identity + states;
-  exact->extended = exact->matrix + states * size;
-  exact->next = exact->extended + size;
-  exact->next_low = exact->next + states;
-  exact->state = exact->next_low + states;
-  exact->linear = exact->state + states;
-  exact->exponent = (int *)(exact->linear + states * (states + lagrangian.input_count + 1));
+static size_t lay_out_exact(struct Exact *exact, void *block) {
+  size_t states = lagrangian.state_count, size = extended_size(1 + INPUT_ORDER);
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_TAKE(&arena, exact->generator, size * size);
+  ARENA_TAKE(&arena, exact->term, size * size);
+  ARENA_TAKE(&arena, exact->product, size * size);
+  ARENA_TAKE(&arena, exact->sum, size * size);
+  ARENA_NUMBERS(&arena, lagrangian.parameter_count, &exact->parameter);
+  ARENA_NUMBERS(&arena, states, &exact->identity, &exact->next, &exact->next_low, &exact->state);
+  ARENA_NUMBERS(&arena, states * size, &exact->matrix);
+  ARENA_NUMBERS(&arena, size, &exact->extended);
+  ARENA_NUMBERS(&arena, states * (states + lagrangian.input_count + 1), &exact->linear);
+  ARENA_TAKE(&arena, exact->exponent, size);
+  return arena.next - (uintptr_t)block;
 }
 
 static bool create(struct Instance *instance) {
-  size_t states = lagrangian.state_count, size = extended_size(1 + INPUT_ORDER);
-  size_t doubles = lagrangian.parameter_count + size + states * (size + states + lagrangian.input_count + 5);
-  struct Exact *exact = instance->memory.allocate(1, sizeof *exact);
-  if (exact != NULL) {
-    instance->solver_memory = exact;
-    exact->generator = instance->memory.allocate(1, 4 * size * size * sizeof(long double) + doubles * sizeof(double) +
-                                                        size * sizeof(int));
-    if (exact->generator != NULL) {
-      divide_block(exact, size);
-      return true;
-    }
-    destroy(instance);
-  }
-  return solver_is_out_of_memory(instance);
+  struct Exact counted, *exact = instance->memory.allocate(1, sizeof *exact + lay_out_exact(&counted, NULL));
+  if (exact == NULL) return solver_is_out_of_memory(instance);
+  lay_out_exact(exact, exact + 1);
+  instance->solver_memory = exact;
+  return true;
 }
 
 /* Computes result = a b for n x n matrices by rows. A zero in a gives 0 even for infinite elements of b. */
@@ -336,7 +321,7 @@ const struct Solver solver_exact = {.name = "the matrix exponential",
                                     .saved_size = saved_size,
                                     .is_saved_valid = is_saved_valid,
                                     .create = create,
-                                    .destroy = destroy,
+                                    .destroy = solver_free_memory,
                                     .restart = restart,
                                     .advance = advance,
                                     .interpolate = interpolate};

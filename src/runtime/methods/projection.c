@@ -21,6 +21,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "support/arena.h"
 
 /* Iterations from a state near the constraints, and from start values. */
 enum { STEP_LIMIT = 10, START_LIMIT = 100 };
@@ -35,7 +36,8 @@ static const double noted_move = 1e-2;         /* with prescribed inputs: moves 
 static const double vanishing = 1e-6;          /* ratio of a row of J where its constraint holds to the row nearby */
 
 /*
- * The parts of the workspace. change, residual, pivot and slope follow each other, as lagrangian.constraints has them.
+ * The workspace, before its arrays. change, residual, pivot and slope follow each other, as lagrangian.constraints
+ * has them.
  */
 struct ProjectionWork {
   double *change;                   /* of the coordinates or velocities */
@@ -45,21 +47,17 @@ struct ProjectionWork {
   double *start;                    /* state_count: where project() began */
   double *first_slope;              /* of each constraint */
   double *rounding;                 /* rounding error bounds of the indicators */
-  double *first; /* the first state that the residuals belong to: 0 for coordinates, coordinate_count for velocities */
+  size_t first; /* the first state that the residuals belong to: 0 for coordinates, coordinate_count for velocities */
 };
 
-static struct ProjectionWork work_of(const struct Instance *instance) {
-  struct ProjectionWork work = {.change = instance->projection_work};
-  work.residual = work.change + lagrangian.coordinate_count;
-  work.pivot = work.residual + lagrangian.constraints.count;
-  work.slope = work.pivot + lagrangian.constraints.count;
-  work.moved = work.slope + lagrangian.constraints.count;
-  work.before = work.moved + lagrangian.state_count;
-  work.start = work.before + lagrangian.state_count;
-  work.first_slope = work.start + lagrangian.state_count;
-  work.first = work.first_slope + lagrangian.constraints.count;
-  work.rounding = work.first + 1;
-  return work;
+static size_t lay_out_projection(void *block) {
+  struct ProjectionWork counted, *work = block != NULL ? block : &counted;
+  struct Arena arena = {(uintptr_t)block + sizeof *work};
+  ARENA_NUMBERS(&arena, lagrangian.coordinate_count, &work->change);
+  ARENA_NUMBERS(&arena, lagrangian.constraints.count, &work->residual, &work->pivot, &work->slope, &work->first_slope);
+  ARENA_NUMBERS(&arena, lagrangian.state_count, &work->moved, &work->before, &work->start);
+  ARENA_NUMBERS(&arena, indicator_count(lagrangian.switches), &work->rounding);
+  return arena.next - (uintptr_t)block;
 }
 
 /* Returns the largest of coordinate_count values, in units of the scales of the states from first on. */
@@ -78,19 +76,19 @@ enum ProjectionTarget { POSITIONS, VELOCITIES, START_POSITIONS, START_VELOCITIES
 /* Evaluates change, residuals, pivots and slopes. False if M is singular or a value is not finite. */
 static bool evaluate_residual(struct Instance *instance, double time, const double *state,
                               enum ProjectionTarget target) {
-  struct ProjectionWork work = work_of(instance);
+  struct ProjectionWork *work = instance->projection_work;
   struct Point point = solver_point(instance, time, state);
-  struct Seed seed = {.state = work.moved};
+  struct Seed seed = {.state = work->moved};
   bool is_of_positions = target == POSITIONS || target == START_POSITIONS;
-  *work.first = is_of_positions ? 0.0 : (double)lagrangian.coordinate_count;
+  work->first = is_of_positions ? 0 : lagrangian.coordinate_count;
   switch (target) {
-  case POSITIONS: instance->singular = lagrangian.constraints.correct_positions(&point, &seed, work.change); break;
-  case VELOCITIES: instance->singular = lagrangian.constraints.correct_velocities(&point, work.change); break;
-  case START_POSITIONS: instance->singular = lagrangian.constraints.start_positions(&point, &seed, work.change); break;
-  case START_VELOCITIES: instance->singular = lagrangian.constraints.start_velocities(&point, work.change); break;
+  case POSITIONS: instance->singular = lagrangian.constraints.correct_positions(&point, &seed, work->change); break;
+  case VELOCITIES: instance->singular = lagrangian.constraints.correct_velocities(&point, work->change); break;
+  case START_POSITIONS: instance->singular = lagrangian.constraints.start_positions(&point, &seed, work->change); break;
+  case START_VELOCITIES: instance->singular = lagrangian.constraints.start_velocities(&point, work->change); break;
   }
-  return instance->singular == 0 && are_finite(work.change, lagrangian.coordinate_count) &&
-         are_finite(work.residual, lagrangian.constraints.count);
+  return instance->singular == 0 && are_finite(work->change, lagrangian.coordinate_count) &&
+         are_finite(work->residual, lagrangian.constraints.count);
 }
 
 /*
@@ -100,17 +98,17 @@ static bool evaluate_residual(struct Instance *instance, double time, const doub
  */
 static bool residual_is_rounding(struct Instance *instance, double time, const double *state) {
   const struct SwitchTable *switches = lagrangian.switches;
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   if (switches == NULL || switches->contact_count == 0) return false;
   struct Point point = solver_point(instance, time, state);
-  switches->rounding_bounds(&point, instance->acceleration, work.rounding);
+  switches->rounding_bounds(&point, instance->acceleration, work->rounding);
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t constraint = switches->contacts[i].constraint;
-    double rounding = DBL_EPSILON * work.rounding[contact_indicator(switches, i)];
-    if (fabs(work.residual[constraint]) <= rounding) work.residual[constraint] = 0.0;
+    double rounding = DBL_EPSILON * work->rounding[contact_indicator(switches, i)];
+    if (fabs(work->residual[constraint]) <= rounding) work->residual[constraint] = 0.0;
   }
   for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (work.residual[j] != 0.0) return false;
+    if (work->residual[j] != 0.0) return false;
   return true;
 }
 
@@ -124,9 +122,9 @@ static void move_positions(const struct ProjectionWork *work, double *state, dou
 static double move_velocities(struct Instance *instance, double time, double *state, enum ProjectionTarget target) {
   size_t n = lagrangian.coordinate_count;
   if (!evaluate_residual(instance, time, state, target)) return INFINITY;
-  struct ProjectionWork work = work_of(instance);
-  double size = size_of(work.change, state, n);
-  for (size_t i = 0; i < n; i++) state[n + i] += work.change[i];
+  const struct ProjectionWork *work = instance->projection_work;
+  double size = size_of(work->change, state, n);
+  for (size_t i = 0; i < n; i++) state[n + i] += work->change[i];
   return size;
 }
 
@@ -155,12 +153,12 @@ static bool has_redundant(const struct ProjectionWork *work) {
  * residuals to 0 on success.
  */
 static double project_velocities(struct Instance *instance, double time, double *state) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   double size = move_velocities(instance, time, state, VELOCITIES);
-  bool hold = isfinite(size) && (!has_redundant(&work) || (evaluate_residual(instance, time, state, VELOCITIES) &&
-                                                           others_hold(&work, state, lagrangian.coordinate_count)));
+  bool hold = isfinite(size) && (!has_redundant(work) || (evaluate_residual(instance, time, state, VELOCITIES) &&
+                                                          others_hold(work, state, lagrangian.coordinate_count)));
   if (!hold) return INFINITY;
-  memset(work.residual, 0, lagrangian.constraints.count * sizeof *work.residual);
+  memset(work->residual, 0, lagrangian.constraints.count * sizeof *work->residual);
   return size;
 }
 
@@ -170,41 +168,40 @@ static bool holds_velocities_alone(void) {
 }
 
 static double project(struct Instance *instance, double time, double *state) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   double size = INFINITY, before;
-  memcpy(work.start, state, lagrangian.state_count * sizeof *state);
+  memcpy(work->start, state, lagrangian.state_count * sizeof *state);
   if (holds_velocities_alone()) return project_velocities(instance, time, state);
-  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
     if (!evaluate_residual(instance, time, state, POSITIONS)) return INFINITY;
     before = size;
-    size = size_of(work.change, state, 0);
+    size = size_of(work->change, state, 0);
     bool is_rounded = size <= rounded_away && residual_is_rounding(instance, time, state);
     bool is_done = is_rounded || size <= converged || (size <= rounded_away && size >= before);
-    if (is_done && !others_hold(&work, state, 0)) return INFINITY;
-    if (!is_rounded) move_positions(&work, state, 1.0);
+    if (is_done && !others_hold(work, state, 0)) return INFINITY;
+    if (!is_rounded) move_positions(work, state, 1.0);
     if (!is_done) continue;
     double velocities = project_velocities(instance, time, state);
-    return fmax(size_of(work.moved, state, 0), velocities);
+    return fmax(size_of(work->moved, state, 0), velocities);
   }
   return INFINITY;
 }
 
 static bool found_redundant(struct Instance *instance) {
-  struct ProjectionWork work = work_of(instance);
-  return has_redundant(&work);
+  return has_redundant(instance->projection_work);
 }
 
 static double drift(struct Instance *instance, double time) {
-  struct ProjectionWork work = work_of(instance);
-  memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
-  return project(instance, time, work.before);
+  const struct ProjectionWork *work = instance->projection_work;
+  memcpy(work->before, instance->state, lagrangian.state_count * sizeof *work->before);
+  return project(instance, time, work->before);
 }
 
 /* A state off by less than converged stays: where constraints are nearly redundant, a move would magnify rounding. */
 static const double *nearest(struct Instance *instance, double time) {
   double size = drift(instance, time);
-  return isfinite(size) && size > converged ? work_of(instance).before : NULL;
+  return isfinite(size) && size > converged ? instance->projection_work->before : NULL;
 }
 
 /* Returns the first constraint whose residual is not finite. */
@@ -246,17 +243,17 @@ static size_t find_violated(const struct ProjectionWork *work, const double *sta
  * coordinates and velocities.
  */
 static size_t violated_constraint(struct Instance *instance, double time) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   int singular = instance->singular;
   size_t n = lagrangian.coordinate_count, none = lagrangian.constraints.count, larger = none;
-  size_t found = find_violated(&work, work.start, (size_t)*work.first);
+  size_t found = find_violated(work, work->start, work->first);
   if (found == none) {
     double most = fulfilled;
-    memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
-    if (evaluate_residual(instance, time, work.start, POSITIONS))
-      found = find_largest_residual(&work, work.start, 0, &most);
-    if (evaluate_residual(instance, time, work.start, VELOCITIES))
-      larger = find_largest_residual(&work, work.start, n, &most);
+    memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
+    if (evaluate_residual(instance, time, work->start, POSITIONS))
+      found = find_largest_residual(work, work->start, 0, &most);
+    if (evaluate_residual(instance, time, work->start, VELOCITIES))
+      larger = find_largest_residual(work, work->start, n, &most);
     if (larger < none) found = larger;
   }
   instance->singular = singular;
@@ -269,15 +266,15 @@ static size_t violated_constraint(struct Instance *instance, double time) {
  */
 static bool approach_from(struct Instance *instance, double time, double *state, enum ProjectionTarget target,
                           bool least) {
-  struct ProjectionWork work = work_of(instance);
-  memcpy(state, work.before, lagrangian.state_count * sizeof *state);
-  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  const struct ProjectionWork *work = instance->projection_work;
+  memcpy(state, work->before, lagrangian.state_count * sizeof *state);
+  memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
   for (int iteration = 0; iteration < START_LIMIT; iteration++) {
-    if (!least) memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+    if (!least) memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
     if (evaluate_prepare(instance) != STATUS_DONE) return false; /* before the start, modes follow the state */
     if (!evaluate_residual(instance, time, state, target)) return false;
-    double size = size_of(work.change, state, 0);
-    move_positions(&work, state, least && size > largest_move ? largest_move / size : 1.0);
+    double size = size_of(work->change, state, 0);
+    move_positions(work, state, least && size > largest_move ? largest_move / size : 1.0);
     if (size <= converged) return true;
   }
   return false;
@@ -285,20 +282,20 @@ static bool approach_from(struct Instance *instance, double time, double *state,
 
 /* Moves the coordinates. Returns the constraint that cannot be fulfilled; constraints.count for none. */
 static size_t approach_positions(struct Instance *instance, double time, double *state, enum ProjectionTarget target) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   if (!approach_from(instance, time, state, target, true)) approach_from(instance, time, state, target, false);
-  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
   bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_residual(instance, time, state, target);
-  if (!has_value) return find_without_value(&work);
+  if (!has_value) return find_without_value(work);
   residual_is_rounding(instance, time, state);
-  return find_violated(&work, state, 0);
+  return find_violated(work, state, 0);
 }
 
 static size_t approach_velocities(struct Instance *instance, double time, double *state, enum ProjectionTarget target) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   if (!isfinite(move_velocities(instance, time, state, target))) return 0;
   if (!evaluate_residual(instance, time, state, target)) return 0;
-  return find_violated(&work, state, lagrangian.coordinate_count);
+  return find_violated(work, state, lagrangian.coordinate_count);
 }
 
 /* Logs the coordinates and velocities that moved by more than a share of their scales. */
@@ -324,19 +321,19 @@ static void log_redundant(const struct Instance *instance, const struct Projecti
 }
 
 static bool report_violated(struct Instance *instance, size_t constraint, const char *what) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   if (instance->singular != 0) {
     log_singularity(instance, STATUS_ERROR, instance->fmu_state->time);
     return false;
   }
   const char *name = lagrangian.constraints.names[constraint], *kind = evaluate_kind(constraint);
-  if (!isfinite(work.residual[constraint]))
+  if (!isfinite(work->residual[constraint]))
     reject_call(instance, "the %s '%s' has no finite value at these start values; expected others", kind, name);
   else
     reject_call(instance,
                 "no %s near the start values fulfil the %s '%s' with the others: its residual is %g; expected start "
                 "values nearer to a solution, fewer of them fixed, or other parameters",
-                what, kind, name, -work.residual[constraint]);
+                what, kind, name, -work->residual[constraint]);
   return false;
 }
 
@@ -346,18 +343,18 @@ static bool report_violated(struct Instance *instance, size_t constraint, const 
  * state: the instance's own, which piecewise functions follow; it is restored.
  */
 static size_t find_vanishing(struct Instance *instance, double time, double *state) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   size_t n = lagrangian.coordinate_count, found = 0;
-  double *there = work.moved; /* workspace that projections of velocities do not use */
+  double *there = work->moved; /* workspace that projections of velocities do not use */
   if (!evaluate_residual(instance, time, state, VELOCITIES)) return lagrangian.constraints.count;
-  memcpy(work.first_slope, work.slope, lagrangian.constraints.count * sizeof *work.slope);
+  memcpy(work->first_slope, work->slope, lagrangian.constraints.count * sizeof *work->slope);
   memcpy(there, state, lagrangian.state_count * sizeof *state);
   for (size_t i = 0; i < n; i++) state[i] += (i % 2 == 0 ? 1e-3 : -7e-4) * scale_of(state, i);
   bool has_value = evaluate_prepare(instance) == STATUS_DONE && evaluate_residual(instance, time, state, VELOCITIES);
   memcpy(state, there, lagrangian.state_count * sizeof *state);
   if (evaluate_prepare(instance) != STATUS_DONE || !has_value) return lagrangian.constraints.count;
   while (found < lagrangian.constraints.count &&
-         (work.slope[found] == 0.0 || !(work.first_slope[found] <= vanishing * work.slope[found])))
+         (work->slope[found] == 0.0 || !(work->first_slope[found] <= vanishing * work->slope[found])))
     found++; /* the derivative of an open contact is 0 everywhere */
   return found;
 }
@@ -388,40 +385,40 @@ static bool keep_fixed(struct Instance *instance, const double *before) {
 }
 
 static bool make_consistent(struct Instance *instance) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   double time = instance->fmu_state->time;
   bool keeps_fixed = lagrangian.constraints.coordinate_is_fixed != NULL;
-  memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
+  memcpy(work->before, instance->state, lagrangian.state_count * sizeof *work->before);
   size_t violated = approach_positions(instance, time, instance->state, keeps_fixed ? START_POSITIONS : POSITIONS);
   size_t vanishing_one = find_vanishing(instance, time, instance->state);
   if (vanishing_one < lagrangian.constraints.count) return report_vanishing(instance, vanishing_one);
   if (violated < lagrangian.constraints.count) {
-    memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+    memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
     evaluate_residual(instance, time, instance->state, POSITIONS);
     return report_violated(instance, violated, "coordinates");
   }
   violated = approach_velocities(instance, time, instance->state, keeps_fixed ? START_VELOCITIES : VELOCITIES);
   if (violated < lagrangian.constraints.count) return report_violated(instance, violated, "velocities");
-  log_redundant(instance, &work);
-  if (keeps_fixed && !keep_fixed(instance, work.before)) return false;
-  log_moves(instance, work.before, instance->fmu_state->tolerance);
+  log_redundant(instance, work);
+  if (keeps_fixed && !keep_fixed(instance, work->before)) return false;
+  log_moves(instance, work->before, instance->fmu_state->tolerance);
   return true;
 }
 
 /* True if an input has jumped: coordinates cannot follow it. Logs that the step is discarded. */
 static bool has_jumped(struct Instance *instance) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   double time = instance->fmu_state->time, scale = largest_scale(instance->state, 0);
-  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
   if (lagrangian.constraints.prescribed_input_count == 0 ||
       !evaluate_residual(instance, time, instance->state, POSITIONS))
     return false;
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
-    if (lagrangian.constraints.inputs[j] == NULL || residual_length(&work, j, scale) <= largest_jump) continue;
+    if (lagrangian.constraints.inputs[j] == NULL || residual_length(work, j, scale) <= largest_jump) continue;
     log_message(instance, STATUS_DISCARD,
                 "time %g: the residual of the %s '%s' is %g after a jump of an input: it depends on %s; expected "
                 "inputs that move continuously, as their derivatives say",
-                time, evaluate_kind(j), lagrangian.constraints.names[j], -work.residual[j],
+                time, evaluate_kind(j), lagrangian.constraints.names[j], -work->residual[j],
                 lagrangian.constraints.inputs[j]);
     return true;
   }
@@ -436,38 +433,38 @@ static void log_contradiction(struct Instance *instance, size_t constraint, cons
                 "time %g: after a parameter or an input was set, no %s near the present ones fulfil the %s '%s' with "
                 "the others: its residual is %g; expected values with a solution nearby",
                 time, what, evaluate_kind(constraint), lagrangian.constraints.names[constraint],
-                -work_of(instance).residual[constraint]);
+                -instance->projection_work->residual[constraint]);
 }
 
 static bool follow_change(struct Instance *instance) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   double time = instance->fmu_state->time;
   const char *what = "coordinates";
   if (has_jumped(instance)) return false;
-  memcpy(work.before, instance->state, lagrangian.state_count * sizeof *work.before);
+  memcpy(work->before, instance->state, lagrangian.state_count * sizeof *work->before);
   size_t violated = approach_positions(instance, time, instance->state, POSITIONS);
   if (violated == lagrangian.constraints.count) {
     what = "velocities";
     violated = approach_velocities(instance, time, instance->state, VELOCITIES);
   }
   if (violated == lagrangian.constraints.count) {
-    log_moves(instance, work.before,
+    log_moves(instance, work->before,
               lagrangian.constraints.prescribed_input_count > 0 ? noted_move : instance->fmu_state->tolerance);
     return true;
   }
   log_contradiction(instance, violated, what);
-  memcpy(instance->state, work.before, lagrangian.state_count * sizeof *work.before);
+  memcpy(instance->state, work->before, lagrangian.state_count * sizeof *work->before);
   return false;
 }
 
 static const char *weakest(struct Instance *instance, double time, const double *state) {
-  struct ProjectionWork work = work_of(instance);
+  const struct ProjectionWork *work = instance->projection_work;
   size_t found = 0;
   double least = INFINITY;
-  memset(work.moved, 0, lagrangian.state_count * sizeof *work.moved);
+  memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
   if (!evaluate_residual(instance, time, state, POSITIONS)) return NULL;
   for (size_t j = 0; j < lagrangian.constraints.count; j++) {
-    double hold = fabs(work.pivot[j]) / (work.slope[j] * work.slope[j]);
+    double hold = fabs(work->pivot[j]) / (work->slope[j] * work->slope[j]);
     if (!(hold < least)) continue;
     least = hold;
     found = j;
@@ -475,7 +472,8 @@ static const char *weakest(struct Instance *instance, double time, const double 
   return lagrangian.constraints.names[found];
 }
 
-const struct Projection projection = {.project = project,
+const struct Projection projection = {.lay_out = lay_out_projection,
+                                      .project = project,
                                       .drift = drift,
                                       .nearest = nearest,
                                       .found_redundant = found_redundant,

@@ -90,25 +90,26 @@ static bool radau_is_saved_valid(const struct FmuState *fmu_state, const void *s
          snapshot_is_finite((const char *)saved + sizeof first, saved_numbers());
 }
 
-static bool radau_create(struct Instance *instance) {
+static size_t lay_out_radau(struct Radau *radau, void *block) {
   size_t states = lagrangian.state_count;
-  size_t numbers = (4 + 2 * STAGE_LIMIT + 2 * SYSTEM_LIMIT) * states + 1 + radau_systems_size();
-  size_t rows = first_terms_rows() * SERIES_LENGTH;
-  struct Radau *radau = instance->memory.allocate(1, sizeof *radau + (numbers + rows) * sizeof(double));
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_TAKE(&arena, radau->w, SYSTEM_LIMIT * states);
+  ARENA_NUMBERS(&arena, states, &radau->state, &radau->scale, &radau->first, &radau->trial);
+  ARENA_NUMBERS(&arena, STAGE_LIMIT * states, &radau->z, &radau->rates);
+  ARENA_TAKE(&arena, radau->series, first_terms_rows());
+  radau_systems_take(&radau->systems, &arena);
+  return arena.next - (uintptr_t)block;
+}
+
+static bool radau_create(struct Instance *instance) {
+  struct Radau counted, *radau = instance->memory.allocate(1, sizeof *radau + lay_out_radau(&counted, NULL));
   if (radau == NULL) return solver_is_out_of_memory(instance);
+  lay_out_radau(radau, radau + 1);
   radau->saved = instance->saved;
   radau->start = (double *)(radau->saved + 1);
-  radau->stages = radau->start + states;
-  radau->w = (struct Complex *)(radau + 1);
-  radau->state = (double *)(radau->w + SYSTEM_LIMIT * states);
-  radau->scale = radau->state + states;
-  radau->first = radau->scale + states;
-  radau->trial = radau->first + states;
-  radau->z = radau->trial + states;
-  radau->rates = radau->z + STAGE_LIMIT * states;
-  double *rest = radau->rates + STAGE_LIMIT * states;
-  radau->series = (Series *)rest;
-  radau_systems_slot(&radau->systems, radau->stages + STAGE_LIMIT * states, rest + rows);
+  radau->stages = radau->start + lagrangian.state_count;
+  radau->systems.values = radau->stages + STAGE_LIMIT * lagrangian.state_count;
+  radau_systems_find_slots(&radau->systems);
   instance->solver_memory = radau;
   return true;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "instance/solver.h"
+#include "support/arena.h"
 
 /* Most stages of a method, and most linear systems: one real, and one for each conjugate pair. */
 enum { STAGE_LIMIT = 7, SYSTEM_LIMIT = (STAGE_LIMIT + 1) / 2 };
@@ -42,12 +43,9 @@ struct RadauSystems {
   double *work;                          /* workspace of lagrangian.implicit.lu */
 };
 
-/*
- * Returns the number of doubles that the systems need beside the Jacobian's elements; radau_systems_slot() divides them
- * among the arrays.
- */
-size_t radau_systems_size(void);
-void radau_systems_slot(struct RadauSystems *systems, double *jacobian, double *memory);
+/* Takes all arrays but values; then finds the offsets of J's elements in the matrices. */
+void radau_systems_take(struct RadauSystems *systems, struct Arena *arena);
+void radau_systems_find_slots(struct RadauSystems *systems);
 
 /*
  * Evaluates the Jacobian, with 0 for elements that are not finite, as at a root of 0: the iterations need an

@@ -9,17 +9,18 @@ static size_t width_of(int j) {
   return j == 0 ? REAL : COMPLEX;
 }
 
-size_t radau_systems_size(void) {
-  size_t rows = lu_rows(), states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
-  size_t factors = lagrangian.implicit.lu->size(REAL) + (SYSTEM_LIMIT - 1) * lagrangian.implicit.lu->size(COMPLEX);
-  return (count + rows) + factors + 2 * COMPLEX * states + 2 * COMPLEX * rows;
+void radau_systems_take(struct RadauSystems *systems, struct Arena *arena) {
+  ARENA_TAKE(arena, systems->slot, lagrangian.implicit.pattern.count);
+  ARENA_TAKE(arena, systems->diagonal, lu_rows());
+  for (int j = 0; j < SYSTEM_LIMIT; j++)
+    ARENA_NUMBERS(arena, lagrangian.implicit.lu->size(width_of(j)), &systems->factors[j]);
+  ARENA_TAKE(arena, systems->right_side, lagrangian.state_count);
+  ARENA_TAKE(arena, systems->solution, lagrangian.state_count);
+  ARENA_NUMBERS(arena, 2 * COMPLEX * lu_rows(), &systems->work);
 }
 
-/*
- * Finds the offsets of J's elements in a matrix. The derivative by a velocity shares the offset of that by its
- * coordinate.
- */
-static void find_slots(struct RadauSystems *systems) {
+/* The derivative by a velocity shares the offset of that by its coordinate. */
+void radau_systems_find_slots(struct RadauSystems *systems) {
   const struct Sparsity *pattern = &lagrangian.implicit.pattern;
   size_t n = lagrangian.coordinate_count;
   for (size_t i = 0; i < lu_rows(); i++) systems->diagonal[i] = lagrangian.implicit.lu->slot(i, i);
@@ -27,22 +28,6 @@ static void find_slots(struct RadauSystems *systems) {
     for (int e = pattern->start[column]; e < pattern->start[column + 1]; e++)
       if ((size_t)pattern->row[e] >= n)
         systems->slot[e] = lagrangian.implicit.lu->slot((size_t)pattern->row[e] - n, column < n ? column : column - n);
-}
-
-void radau_systems_slot(struct RadauSystems *systems, double *jacobian, double *memory) {
-  size_t states = lagrangian.state_count, count = lagrangian.implicit.pattern.count;
-  systems->values = jacobian;
-  systems->slot = (size_t *)memory;
-  systems->diagonal = (size_t *)(memory + count);
-  memory += count + lu_rows();
-  for (int j = 0; j < SYSTEM_LIMIT; j++) {
-    systems->factors[j] = memory;
-    memory += lagrangian.implicit.lu->size(width_of(j));
-  }
-  systems->right_side = (struct Complex *)memory;
-  systems->solution = systems->right_side + states;
-  systems->work = (double *)(systems->solution + states);
-  find_slots(systems);
 }
 
 bool radau_systems_evaluate(struct Instance *instance, struct RadauSystems *systems, double time, const double *state) {

@@ -8,6 +8,7 @@
 #include "evaluation/services.h"
 #include "detection/indicators.h"
 #include "detection/search.h"
+#include "support/arena.h"
 
 size_t resolution_value_count(const struct SwitchTable *switches) {
   return sample_slot(switches, switches->sample_count, 0);
@@ -17,49 +18,35 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
-/* Assigns the parts of the workspace, and returns its size; with work NULL only returns the size. */
+/* The workspace of search.c comes first. The arrays before `value` are initially 0. */
 static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = resolution_value_count(switches), indicators = indicator_count(switches);
-  const struct {
-    double **slot;
-    size_t count;
-  } parts[] = {
-      /* initially 0 */
-      {&resolution->largest, values},
-      {&resolution->flips, indicators},
-      {&resolution->rate, switches->branch_count},
-      {&resolution->absent, switches->branch_count},
-      {&resolution->was_opened, switches->contact_count},
-      {&resolution->struck, switches->contact_count},
-      {&resolution->value, values},
-      {&resolution->error_bound, values},
-      {&resolution->other_error_bound, values},
-      {&resolution->force_error_bound, switches->friction_count},
-      {&resolution->began, switches->friction_count},
-      {&resolution->condition, switches->event_count},
-      {&resolution->happened, switches->event_count},
-      {&resolution->first_mode, switches->contact_count + switches->friction_count},
-      {&resolution->takes_part, switches->contact_count + switches->friction_count},
-      {&resolution->moves, switches->resting_count},
-      {&resolution->probe_input, switches->resting_count > 0 ? lagrangian.input_count : 0},
-      {&resolution->probe_acceleration, switches->resting_count > 0 ? rows_of_matrix() : 0},
-      {&resolution->probe_sums, 2 * switches->resting_count},
-      {&resolution->ball_distance, switches->ball_count},
-      {&resolution->energy, switches->energy_count},
-      {&resolution->acceleration, rows_of_matrix()},
-      {&resolution->kept_modes, switches->mode_count},
-      {&resolution->rounded, lagrangian.state_count},
-      {&resolution->derivative, lagrangian.state_count},
-      {&resolution->rounding, indicators},
-      {&resolution->correction, lagrangian.coordinate_count + 3 * lagrangian.constraints.count},
-  };
-  size_t used = search_work_count();
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
-    if (work != NULL) *parts[i].slot = work + used;
-    used += parts[i].count;
+  size_t modes = switches->contact_count + switches->friction_count;
+  struct Arena arena = {(uintptr_t)work};
+  arena_take(&arena, search_work_count(), sizeof(double));
+  ARENA_NUMBERS(&arena, values, &resolution->largest);
+  ARENA_NUMBERS(&arena, indicators, &resolution->flips);
+  ARENA_NUMBERS(&arena, switches->branch_count, &resolution->rate, &resolution->absent);
+  ARENA_NUMBERS(&arena, switches->contact_count, &resolution->was_opened, &resolution->struck);
+  ARENA_NUMBERS(&arena, values, &resolution->value, &resolution->error_bound, &resolution->other_error_bound);
+  ARENA_NUMBERS(&arena, switches->friction_count, &resolution->force_error_bound, &resolution->began);
+  ARENA_NUMBERS(&arena, switches->event_count, &resolution->condition, &resolution->happened);
+  ARENA_NUMBERS(&arena, modes, &resolution->first_mode, &resolution->takes_part);
+  ARENA_NUMBERS(&arena, switches->resting_count, &resolution->moves);
+  if (switches->resting_count > 0) {
+    ARENA_NUMBERS(&arena, lagrangian.input_count, &resolution->probe_input);
+    ARENA_NUMBERS(&arena, rows_of_matrix(), &resolution->probe_acceleration);
   }
-  return used;
+  ARENA_NUMBERS(&arena, 2 * switches->resting_count, &resolution->probe_sums);
+  ARENA_NUMBERS(&arena, switches->ball_count, &resolution->ball_distance);
+  ARENA_NUMBERS(&arena, switches->energy_count, &resolution->energy);
+  ARENA_NUMBERS(&arena, rows_of_matrix(), &resolution->acceleration);
+  ARENA_NUMBERS(&arena, switches->mode_count, &resolution->kept_modes);
+  ARENA_NUMBERS(&arena, lagrangian.state_count, &resolution->rounded, &resolution->derivative);
+  ARENA_NUMBERS(&arena, indicators, &resolution->rounding);
+  ARENA_NUMBERS(&arena, rows_of_matrix() + 2 * lagrangian.constraints.count, &resolution->correction);
+  return (arena.next - (uintptr_t)work) / sizeof(double);
 }
 
 size_t resolution_work_count(void) {

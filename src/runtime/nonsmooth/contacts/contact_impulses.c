@@ -7,6 +7,7 @@
 #include "nonsmooth/contacts/planes.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "support/arena.h"
 
 /* Flights shorter than this many units in the last place of the time count as rest: their ends cannot be separated. */
 static const double shortest_flight = 1000.0;
@@ -148,28 +149,28 @@ static bool respond_to_unit(struct Resolution *resolution, size_t constraint, do
  * Computes the effect of each unit impulse: the generalized impulses in jacobian_row (count rows, those of J), and M^-1
  * J^T in impulses->velocities; then their products W. False if M is singular.
  */
-static bool respond_to_impulses(struct Resolution *resolution, struct ContactImpulses *impulses, double *jacobian_row,
-                                double *impulse, double *response) {
+static bool respond_to_impulses(struct Resolution *resolution, struct ContactImpulses *impulses) {
   size_t n = lagrangian.coordinate_count;
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
   for (size_t row = 0; row < impulses->count; row++) {
-    if (!respond_to_unit(resolution, constraint_of(impulses, resolution->switches, row), impulse, response))
+    if (!respond_to_unit(resolution, constraint_of(impulses, resolution->switches, row), impulses->impulse,
+                         impulses->response))
       return false;
-    memcpy(impulses->velocities + row * n, response, n * sizeof *response);
-    memcpy(jacobian_row + row * n, response + n, n * sizeof *response);
+    memcpy(impulses->velocities + row * n, impulses->response, n * sizeof *impulses->response);
+    memcpy(impulses->jacobian_row + row * n, impulses->response + n, n * sizeof *impulses->response);
   }
   for (size_t i = 0; i < impulses->count; i++)
     for (size_t j = 0; j < impulses->count; j++) {
       double *delassus = &impulses->delassus[i * impulses->count + j];
       *delassus = 0.0;
-      for (size_t k = 0; k < n; k++) *delassus += jacobian_row[i * n + k] * impulses->velocities[j * n + k];
+      for (size_t k = 0; k < n; k++) *delassus += impulses->jacobian_row[i * n + k] * impulses->velocities[j * n + k];
     }
   return true;
 }
 
 /* Computes the friction limits by unit contact forces: differences to the limits without force, as these are linear. */
-static void find_coefficients(struct Resolution *resolution, struct ContactImpulses *impulses, double *force,
-                              double *value) {
+static void find_coefficients(struct Resolution *resolution, struct ContactImpulses *impulses) {
+  double *force = impulses->impulse, *value = impulses->value;
   struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
   size_t contacts = impulses->contact_count, n = lagrangian.coordinate_count;
   for (size_t i = 0; i <= contacts && impulses->friction_count > 0; i++) {
@@ -196,39 +197,42 @@ static void find_rates(const struct Resolution *resolution, struct ContactImpuls
   }
 }
 
+static size_t lay_out_impulses(struct ContactImpulses *impulses, void *block) {
+  size_t n = lagrangian.coordinate_count, count = impulses->count;
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_NUMBERS(&arena, count * n, &impulses->velocities, &impulses->jacobian_row);
+  ARENA_NUMBERS(&arena, count * count, &impulses->delassus);
+  ARENA_NUMBERS(&arena, count, &impulses->rate);
+  ARENA_NUMBERS(&arena, impulses->friction_count * impulses->contact_count, &impulses->coefficient);
+  ARENA_NUMBERS(&arena, n + lagrangian.constraints.count, &impulses->impulse);
+  ARENA_NUMBERS(&arena, 2 * n, &impulses->response);
+  ARENA_NUMBERS(&arena, resolution_value_count(lagrangian.switches), &impulses->value);
+  ARENA_TAKE(&arena, impulses->member, count);
+  return arena.next - (uintptr_t)block;
+}
+
 bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses) {
   const struct SwitchTable *switches = resolution->switches;
-  size_t n = lagrangian.coordinate_count, rows = n + lagrangian.constraints.count;
-  size_t values = resolution_value_count(switches), contacts = 0, frictions = 0;
+  size_t contacts = 0, frictions = 0;
   for (size_t i = 0; i < switches->contact_count; i++) contacts += contact_takes_part(resolution, i) ? 1 : 0;
   for (size_t i = 0; i < switches->friction_count; i++) frictions += friction_takes_part(resolution, i) ? 1 : 0;
   *impulses = (struct ContactImpulses){.contact_count = contacts,
                                        .friction_count = frictions,
                                        .count = contacts + frictions,
                                        .deciding_count = contacts};
-  size_t count = impulses->count, numbers = 2 * count * n + count * count + count + frictions * contacts;
-  size_t scratch = rows + 2 * n + values;
-  impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES,
-                                 (numbers + scratch) * sizeof(double) + count * sizeof(size_t));
+  impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES, lay_out_impulses(impulses, NULL));
   if (impulses->block == NULL) {
     solver_is_out_of_memory(resolution->instance);
     return false;
   }
-  impulses->velocities = impulses->block;
-  double *jacobian_row = impulses->velocities + count * n;
-  impulses->delassus = jacobian_row + count * n;
-  impulses->rate = impulses->delassus + count * count;
-  impulses->coefficient = impulses->rate + count;
-  impulses->work = impulses->coefficient + frictions * contacts;
-  double *force = impulses->work, *response = force + rows, *value = response + 2 * n;
-  impulses->member = (size_t *)(value + values);
+  lay_out_impulses(impulses, impulses->block);
   size_t next = 0;
   for (size_t i = 0; i < switches->contact_count; i++)
     if (contact_takes_part(resolution, i)) impulses->member[next++] = i;
   for (size_t i = 0; i < switches->friction_count; i++)
     if (friction_takes_part(resolution, i)) impulses->member[next++] = i;
-  if (respond_to_impulses(resolution, impulses, jacobian_row, force, response)) {
-    find_coefficients(resolution, impulses, force, value);
+  if (respond_to_impulses(resolution, impulses)) {
+    find_coefficients(resolution, impulses);
     find_rates(resolution, impulses);
     return true;
   }
@@ -243,7 +247,7 @@ bool contact_impulses_find_own(struct Resolution *resolution, const struct Conta
   resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) set_contact(resolution, i, false);
   for (size_t i = 0; i < switches->friction_count; i++) set_friction(resolution, i, 1.0);
-  double *impulse = impulses->work, *response = impulse + n + lagrangian.constraints.count;
+  double *impulse = impulses->impulse, *response = impulses->response;
   bool done = evaluate_prepare(resolution->instance) == STATUS_DONE;
   for (size_t i = 0; i < impulses->contact_count && done; i++) {
     done = respond_to_unit(resolution, constraint_of(impulses, switches, i), impulse, response);

@@ -18,7 +18,8 @@ struct ContactImpulses {
   size_t deciding_count; /* leading rows on whose impulses friction limits depend: those of the contacts */
   double *coefficient;   /* friction_count rows: friction limit by a unit impulse of each of them */
   double *given;         /* friction limits without them; NULL for none */
-  double *work;          /* an impulse of 0 for each coordinate and constraint, then its response */
+  /* Workspace: rows of the Jacobian; an impulse of 0 on each coordinate and constraint, its response, and values. */
+  double *jacobian_row, *impulse, *response, *value;
   void *block;
 };
 

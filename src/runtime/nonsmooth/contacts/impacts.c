@@ -28,6 +28,7 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "support/arena.h"
 
 /* HALVINGS: bisections of the factor of the restitutions, to 2^-52. SOLUTIONS: iterations of the proximal method. */
 enum { HALVINGS = 52, SOLUTIONS = 50 };
@@ -88,25 +89,27 @@ static void fill_friction(struct ImpactProblem *problem, size_t friction) {
     problem->matrix[slides * n + i] = impulses->coefficient[friction * contacts + i] * problem->unit[i] / unit;
 }
 
+static size_t lay_out_problem(struct ImpactProblem *problem, void *block) {
+  size_t n = problem->count;
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_NUMBERS(&arena, problem->impulses->count, &problem->unit, &problem->impulse);
+  ARENA_NUMBERS(&arena, n * n, &problem->matrix);
+  ARENA_NUMBERS(&arena, n, &problem->rate, &problem->q, &problem->z, &problem->next);
+  ARENA_NUMBERS(&arena, complementarity_work_count(n), &problem->work);
+  return arena.next - (uintptr_t)block;
+}
+
 /* Sets up the matrix. False if a contact cannot be moved, or memory is missing. */
 static bool create_problem(struct Resolution *resolution, const struct ContactImpulses *impulses,
                            struct ImpactProblem *problem) {
   size_t n = impulses->contact_count + 3 * impulses->friction_count, count = impulses->count;
-  size_t numbers = 2 * count + n * n + 4 * n + complementarity_work_count(n);
   *problem = (struct ImpactProblem){.impulses = impulses, .count = n};
-  problem->block = scratch_take(resolution->instance, SCRATCH_IMPACT, numbers * sizeof(double));
+  problem->block = scratch_take(resolution->instance, SCRATCH_IMPACT, lay_out_problem(problem, NULL));
   if (problem->block == NULL) {
     solver_is_out_of_memory(resolution->instance);
     return false;
   }
-  problem->unit = problem->block;
-  problem->impulse = problem->unit + count;
-  problem->matrix = problem->impulse + count;
-  problem->rate = problem->matrix + n * n;
-  problem->q = problem->rate + n;
-  problem->z = problem->q + n;
-  problem->next = problem->z + n;
-  problem->work = problem->next + n;
+  lay_out_problem(problem, problem->block);
   bool moves = true;
   for (size_t i = 0; i < count; i++) {
     double delassus = impulses->delassus[i * count + i];

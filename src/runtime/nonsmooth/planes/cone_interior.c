@@ -28,6 +28,7 @@
 
 #include "nonsmooth/contacts/elimination.h"
 #include "nonsmooth/planes/cone_newton.h"
+#include "support/arena.h"
 
 /* Steps of a path at most; steps between two trials of Newton's method; associated problems at most. */
 enum { PATH_STEPS = 40, TRIAL_STEPS = 3, ASSOCIATED_LIMIT = 60, UNDAMPED_LIMIT = 20 };
@@ -69,12 +70,25 @@ struct Interior {
   double *shift;        /* mu |u| of the last solution, for the associated problem */
   double *equations;    /* n rows of n + 1 */
   double *best;         /* impulses with the least residual */
+  double *newton;       /* workspace of cone_newton() */
   double least, enough; /* this residual, and one that ends the search */
   bool is_associated, is_centered;
 };
 
+/* Divides the workspace. start_path() fills x to ddual_head at once. */
+static size_t lay_out_interior(struct Interior *interior, size_t n, double *work) {
+  struct Arena arena = {(uintptr_t)work};
+  ARENA_NUMBERS(&arena, n, &interior->unit, &interior->x, &interior->dual, &interior->head, &interior->dual_head,
+                &interior->dx, &interior->ddual, &interior->dhead, &interior->ddual_head, &interior->shift,
+                &interior->best);
+  ARENA_NUMBERS(&arena, n * (n + 1), &interior->equations);
+  ARENA_NUMBERS(&arena, cone_newton_work_count(n), &interior->newton);
+  return (arena.next - (uintptr_t)work) / sizeof(double);
+}
+
 size_t cone_interior_work_count(size_t n) {
-  return n * (n + 1) + 11 * n + cone_newton_work_count(n);
+  struct Interior interior;
+  return lay_out_interior(&interior, n, NULL);
 }
 
 static bool takes_part(const struct Interior *interior, size_t row) {
@@ -288,11 +302,11 @@ static double mean_product(const struct Interior *interior) {
 }
 
 /* Tries Newton's method from the point of the path. True if its residual is small enough. */
-static bool try_newton(struct Interior *interior, double *work) {
+static bool try_newton(struct Interior *interior) {
   struct Cones *cones = interior->cones;
   for (size_t i = 0; i < interior->n; i++)
     cones->impulse[i] = takes_part(interior, i) ? interior->x[i] * interior->unit[i] * interior->size : 0.0;
-  double miss = cones_relative_miss(cones, cone_newton(cones, work));
+  double miss = cones_relative_miss(cones, cone_newton(cones, interior->newton));
   if (!(miss < interior->least)) return false;
   interior->least = miss;
   memcpy(interior->best, cones->impulse, interior->n * sizeof *interior->best);
@@ -313,17 +327,17 @@ static void start_path(const struct Interior *interior) {
 }
 
 /* Follows the path. True if impulses with a small enough residual are found. */
-static bool follow_central_path(struct Interior *interior, double *work) {
+static bool follow_central_path(struct Interior *interior) {
   double mu = INFINITY, length = 1.0;
   start_path(interior);
   for (int step = 0; step < PATH_STEPS && length > 0.0 && mu > none; step++) {
     mu = mean_product(interior);
     bool is_near = mu < nearly_none || (!interior->is_associated && step % TRIAL_STEPS == TRIAL_STEPS - 1);
-    if (is_near && !interior->is_centered && try_newton(interior, work)) return true;
+    if (is_near && !interior->is_centered && try_newton(interior)) return true;
     length = find_path_step(interior, mu * centering[length < long_step]);
     take_path_step(interior, length);
   }
-  return try_newton(interior, work);
+  return try_newton(interior);
 }
 
 /* Sets the shifts to mu |u| of the solution; damped ones to the mean with those before. */
@@ -366,40 +380,22 @@ static void fill_units_of_rows(struct Interior *interior) {
   }
 }
 
-static struct Interior interior_in(struct Cones *cones, double enough, double *work) {
-  size_t n = cones->impulses->count;
-  struct Interior interior = {.cones = cones, .n = n, .least = INFINITY, .enough = enough, .unit = work};
-  interior.x = interior.unit + n;
-  interior.dual = interior.x + n;
-  interior.head = interior.dual + n;
-  interior.dual_head = interior.head + n;
-  interior.dx = interior.dual_head + n;
-  interior.ddual = interior.dx + n;
-  interior.dhead = interior.ddual + n;
-  interior.ddual_head = interior.dhead + n;
-  interior.shift = interior.ddual_head + n;
-  interior.best = interior.shift + n;
-  interior.equations = interior.best + n;
-  return interior;
-}
-
 double cone_interior(struct Cones *cones, double enough, bool is_centered, double *work) {
-  struct Interior interior = interior_in(cones, enough, work);
-  interior.is_centered = is_centered;
-  size_t n = interior.n;
+  size_t n = cones->impulses->count;
+  struct Interior interior = {.cones = cones, .n = n, .least = INFINITY, .enough = enough, .is_centered = is_centered};
+  lay_out_interior(&interior, n, work);
   memset(interior.best, 0, n * sizeof *interior.best);
   memset(interior.shift, 0, n * sizeof *interior.shift);
   fill_units_of_rows(&interior);
   if (interior.size > 0.0) {
-    double *newton = interior.equations + n * (n + 1);
-    bool is_found = follow_central_path(&interior, newton);
+    bool is_found = follow_central_path(&interior);
     if (!is_found && is_centered) {
       interior.is_centered = false;
-      is_found = follow_central_path(&interior, newton);
+      is_found = follow_central_path(&interior);
     }
     interior.is_associated = true;
     for (int count = 0; count < ASSOCIATED_LIMIT && interior.least > nearly_solved && !is_found; count++) {
-      is_found = follow_central_path(&interior, newton);
+      is_found = follow_central_path(&interior);
       update_shift(&interior, count >= UNDAMPED_LIMIT);
     }
   } else interior.least = 0.0;

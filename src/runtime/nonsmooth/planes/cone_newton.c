@@ -17,6 +17,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "support/arena.h"
+
 /* Largest number of Newton steps; a few suffice once the active pieces are right. */
 enum { NEWTON_LIMIT = 60 };
 
@@ -34,8 +36,16 @@ struct ConeNewton {
   double *step, *before, *column;
 };
 
+static size_t lay_out_newton(struct ConeNewton *newton, size_t n, double *work) {
+  struct Arena arena = {(uintptr_t)work};
+  ARENA_NUMBERS(&arena, n * n, &newton->slope);
+  ARENA_NUMBERS(&arena, n, &newton->miss, &newton->step, &newton->before, &newton->column);
+  return (arena.next - (uintptr_t)work) / sizeof(double);
+}
+
 size_t cone_newton_work_count(size_t n) {
-  return n * n + 4 * n;
+  struct ConeNewton newton;
+  return lay_out_newton(&newton, n, NULL);
 }
 
 static double *slope_row(const struct ConeNewton *newton, size_t row) {
@@ -165,11 +175,8 @@ static void find_step(const struct ConeNewton *newton) {
 
 double cone_newton(struct Cones *cones, double *work) {
   size_t n = cones->impulses->count, bytes = n * sizeof(double);
-  struct ConeNewton newton = {.cones = cones, .n = n, .slope = work};
-  newton.miss = work + n * n;
-  newton.step = newton.miss + n;
-  newton.before = newton.step + n;
-  newton.column = newton.before + n;
+  struct ConeNewton newton = {.cones = cones, .n = n};
+  lay_out_newton(&newton, n, work);
   double miss = fill_equations(&newton);
   for (int count = 0; count < NEWTON_LIMIT && miss > rounded_miss * cones_largest(cones); count++) {
     memcpy(newton.before, cones->impulse, bytes);
