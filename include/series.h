@@ -71,37 +71,7 @@ static SERIES_INLINE double pair_second(Pair a) {
   return a[1];
 }
 #else
-typedef struct Pair {
-  double first, second;
-} Pair;
-
-static SERIES_INLINE Pair pair_product(const double *a, const double *b) {
-  return (Pair){a[0] * b[0], a[1] * b[-1]};
-}
-
-static SERIES_INLINE Pair pair_sum(Pair a, Pair b) {
-  return (Pair){a.first + b.first, a.second + b.second};
-}
-
-static SERIES_INLINE double pair_total(Pair a) {
-  return a.first + a.second;
-}
-
-static SERIES_INLINE Pair pair_at(const double *a) {
-  return (Pair){a[0], a[1]};
-}
-
-static SERIES_INLINE Pair pair_multiple(Pair a, double factor) {
-  return (Pair){a.first * factor, a.second * factor};
-}
-
-static SERIES_INLINE double pair_first(Pair a) {
-  return a.first;
-}
-
-static SERIES_INLINE double pair_second(Pair a) {
-  return a.second;
-}
+#include "pairs.h"
 #endif
 
 /*

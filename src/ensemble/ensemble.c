@@ -14,7 +14,7 @@ struct LaneGroup {
 };
 
 static void set_lane(struct LaneSteps *steps, const struct ScalarVariable *variable, int lane, double value) {
-  if (variable->kind == VARIABLE_STATE) steps->x[variable->index][0][lane] = value;
+  if (variable->kind == VARIABLE_STATE) steps->step.x[variable->index][0][lane] = value;
   if (variable->kind == VARIABLE_INPUT) steps->constants[variable->index][lane] = value;
   if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_MODE)
     steps->parameter[variable->index][lane] = value;
@@ -45,7 +45,7 @@ static void load_run(struct LaneGroup *group, int lane) {
     set_lane(steps, variable, lane, value);
     is_right &= is_allowed(variable, value);
   }
-  for (size_t i = 0; i < lagrangian.state_count; i++) steps->low[i][lane] = 0.0;
+  for (size_t i = 0; i < lagrangian.state_count; i++) steps->step.low[i][lane] = 0.0;
   steps->origin[lane] = steps->interval[lane] = 0.0;
   steps->fast[lane] = steps->path[lane] = steps->steps[lane] = 0.0;
   group->run[lane] = run;
@@ -65,7 +65,8 @@ static void set_following_starts(struct LaneGroup *group, Mask lanes) {
     const struct ScalarVariable *variable = &lagrangian.variables[lagrangian.following[i]];
     bool follows = true;
     for (size_t j = 0; j < ensemble->varied_count; j++) follows &= ensemble->varied[j] != lagrangian.following[i];
-    Lanes *value = variable->kind == VARIABLE_STATE ? steps->x[variable->index] : &steps->parameter[variable->index];
+    Lanes *value =
+        variable->kind == VARIABLE_STATE ? steps->step.x[variable->index] : &steps->parameter[variable->index];
     if (follows) *value = lanes_select(lanes, steps->start[i], *value);
   }
 }
@@ -123,7 +124,7 @@ static bool asks_for_accelerations(const struct Ensemble *ensemble) {
   return false;
 }
 
-/* Returns the accelerations for result(), at steps->state; *is_lost: lanes without. */
+/* Returns the accelerations for result(), at steps->step.state; *is_lost: lanes without. */
 static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *is_lost) {
   struct LaneSteps *steps = events->steps;
   if (lagrangian.constraints.accelerations != NULL) {
@@ -132,13 +133,13 @@ static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *i
   }
   struct Point point = lane_steps_point(steps, time);
   failed_lanes = (Mask){0};
-  lagrangian.derivatives(&point, steps->rate);
+  lagrangian.derivatives(&point, steps->step.rate);
   *is_lost = failed_lanes;
-  return steps->rate + lagrangian.coordinate_count;
+  return steps->step.rate + lagrangian.coordinate_count;
 }
 
 /*
- * Samples the recorded variables at a time of each lane and at steps->state, in the reached lanes. run, slot: of each
+ * Samples the recorded variables at a time of each lane and at steps->step.state, in the reached lanes. run, slot: of each
  * lane, the run and the index of the time. Returns the lanes in which a value is not finite.
  */
 static Mask report_values(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,

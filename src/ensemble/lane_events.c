@@ -3,23 +3,29 @@
 #include <stdlib.h>
 
 #include "detection/chebyshev.h"
+#include "support/arena.h"
 
 bool lane_events_are_needed(void) {
   return single_run_is_needed();
 }
 
+static size_t lay_out_events(struct LaneEvents *events, Lanes *block) {
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_NUMBERS(&arena, lagrangian.coordinate_count + lagrangian.constraints.count, &events->acceleration);
+  ARENA_NUMBERS(&arena, CHEBYSHEV_NODES * indicator_count(lagrangian.switches), &events->indicator);
+  return (arena.next - (uintptr_t)block) / sizeof(Lanes);
+}
+
 bool lane_events_create(struct LaneEvents *events, struct LaneSteps *steps) {
-  size_t forces = lagrangian.coordinate_count + lagrangian.constraints.count;
-  size_t rows = forces + CHEBYSHEV_NODES * indicator_count(lagrangian.switches) + 1;
   *events = (struct LaneEvents){.steps = steps};
   if (!lane_events_are_needed()) return true;
   events->run = single_run_create(LANES, steps->tolerance, steps->length);
-  events->acceleration = lane_rows(rows, &events->memory);
-  if (events->run == NULL || events->acceleration == NULL) {
+  Lanes *block = lane_rows(lay_out_events(events, NULL), &events->memory);
+  if (events->run == NULL || block == NULL) {
     lane_events_destroy(events);
     return false;
   }
-  events->indicator = events->acceleration + forces;
+  lay_out_events(events, block);
   return true;
 }
 
@@ -31,11 +37,11 @@ void lane_events_destroy(struct LaneEvents *events) {
 static struct LaneView view_of(const struct LaneSteps *steps, int lane) {
   return (struct LaneView){.number = (size_t)lane,
                            .stride = LANES,
-                           .order = steps->order,
+                           .order = (int)steps->step.order,
                            .origin = steps->origin[lane],
                            .interval = steps->interval[lane],
-                           .series = (double *)steps->x + lane,
-                           .low = (double *)steps->low + lane,
+                           .series = (double *)steps->step.x + lane,
+                           .low = (double *)steps->step.low + lane,
                            .parameter = (double *)steps->parameter + lane,
                            .parameter_constants = (double *)steps->parameter_constants + lane,
                            .input = (double *)steps->constants + lane};
@@ -188,7 +194,7 @@ Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes) {
   for (int i = 0; i < LANES; i++) {
     if (!constrained[i]) continue;
     struct LaneView view = view_of(steps, i);
-    lost[i] = single_run_project(events->run, &view, time[i], (double *)steps->state + i) ? 0 : -1;
+    lost[i] = single_run_project(events->run, &view, time[i], (double *)steps->step.state + i) ? 0 : -1;
   }
   return lost;
 }
@@ -200,7 +206,7 @@ Mask lane_events_check_end(struct LaneEvents *events, Lanes time, Mask lanes) {
   for (int i = 0; i < LANES; i++) {
     if (!lanes[i]) continue;
     struct LaneView view = view_of(steps, i);
-    fails[i] = single_run_may_end(events->run, &view, time[i], (double *)steps->state + i) ? 0 : -1;
+    fails[i] = single_run_may_end(events->run, &view, time[i], (double *)steps->step.state + i) ? 0 : -1;
   }
   return fails;
 }

@@ -38,11 +38,11 @@ Mask lane_events_find(struct LaneEvents *events, Mask active);
  */
 Mask lane_events_continue(struct LaneEvents *events, Mask active);
 
-/* Computes accelerations and forces of a constrained system at steps->state. Returns the lanes in which that fails. */
+/* Computes accelerations and forces of a constrained system at steps->step.state. Returns the lanes in which that fails. */
 Mask lane_events_accelerations(struct LaneEvents *events, Lanes time);
 
-/* Projects steps->state at each lane's time onto its closed constraints. Returns the lanes in which that fails. */
+/* Projects steps->step.state at each lane's time onto its closed constraints. Returns the lanes in which that fails. */
 Mask lane_events_project(struct LaneEvents *events, Lanes time, Mask lanes);
 
-/* Returns the lanes in which the checks at the end of a run fail for steps->state. */
+/* Returns the lanes in which the checks at the end of a run fail for steps->step.state. */
 Mask lane_events_check_end(struct LaneEvents *events, Lanes time, Mask lanes);

@@ -6,6 +6,7 @@
 #include "reciprocals.h"
 
 #define SERIES_INLINE inline __attribute__((always_inline, unused))
+#include "pairs.h"
 
 /* Returns the sum of a[j] b[-j] for j < n; the additions form one chain, beside which other sums run. */
 LANES_INLINE Lanes series_dot(int n, const Lanes *a, const Lanes *b) {

@@ -1,33 +1,31 @@
 /*
  * The Taylor method for several runs, a vector lane for each: the algorithm of methods/taylor.c and taylor_interval.c
- * with the same rule (methods/taylor_rule.h). All lanes share the order, which follows from the tolerance; each has
- * its own time and step. Branches become masks, so that a lane's results do not depend on other lanes.
+ * with the same step (methods/taylor_rule.h) and defect (methods/taylor_defect.h). All lanes share the order, which
+ * follows from the tolerance; each has its own time and step. Branches become masks, so that a lane's results do not
+ * depend on other lanes.
  */
 #pragma once
 
+#include "lane_functions.h"
 #include "lane_system.h"
+#include "methods/taylor_rule.h"
 
 /* The runs in lanes. Rows have one vector for each state variable or coefficient; all rows are parts of memory. */
 struct LaneSteps {
-  void *memory; /* memory of all rows */
-  int order;
+  struct TaylorStep step;
+  void *memory;     /* memory of all rows */
   double margin;    /* see taylor_rule.h */
-  double tolerance; /* relative */
+  double tolerance; /* relative, of the runs */
   double longest;   /* longest step, in s */
   double length;    /* length of the runs, in s */
   /* time of the series' origin, and length of the step in which they are valid, in s */
   Lanes origin, interval;
   Lanes *parameter, *parameter_constants, *constants; /* constants: the inputs, which are constant in a run */
-  Lanes *unit; /* 1 / scale of each state variable; the scale is its size, or its nominal value if that is larger */
-  Lanes *low;  /* compensation of the state at the origin: the low part of its sum */
-  Series *x, *input, *work;   /* x[i][0] is the state at the origin */
-  Lanes *derivative, *change; /* at the end of the step, from the defect check; see taylor.h */
-  Lanes *state, *rate;        /* the state at which functions are evaluated, and scratch */
-  Lanes *point_work;          /* workspace of generated functions */
-  Lanes *start;               /* of the variables of lagrangian.following: start values that follow from parameters */
-  Mask is_limited;            /* the coefficients do not limit the step; a bound or a defect does */
-  Lanes fast;                 /* number of consecutive steps, up to the last, that fast modes may have limited */
-  Lanes path, steps;          /* of recent steps that the coefficients limit: sum of the state's changes, and number */
+  Series *input, *work; /* coefficients of the inputs; workspace of lagrangian.taylor.series */
+  Lanes *point_work;    /* workspace of generated functions */
+  Lanes *start;         /* of the variables of lagrangian.following: start values that follow from parameters */
+  Lanes fast;           /* number of consecutive steps, up to the last, that fast modes may have limited */
+  Lanes path, steps;    /* of recent steps that the coefficients limit: sum of the state's changes, and number */
 };
 
 /* Allocates rows of 0, aligned; free(*memory) releases them. Returns NULL if memory is exhausted. */
@@ -38,8 +36,8 @@ bool lane_steps_create(struct LaneSteps *steps, double tolerance, double length)
 void lane_steps_destroy(struct LaneSteps *steps);
 
 /*
- * Prepares parameters, and evaluates the derivatives at the origin x[i][0], in all lanes; unchanged lanes get the same
- * values again. Returns the lanes that reject a parameter.
+ * Prepares parameters, and evaluates the derivatives at the origin, in all lanes; unchanged lanes get the same values
+ * again. Returns the lanes that reject a parameter.
  */
 Mask lane_steps_start(struct LaneSteps *steps);
 
@@ -52,8 +50,8 @@ Mask lane_steps_expand(struct LaneSteps *steps, Mask active);
 /* Moves the origin to the end of the step. Returns the lanes that stagnate. */
 Mask lane_steps_move(struct LaneSteps *steps);
 
-/* Returns the point of generated functions at a time and at steps->state. */
+/* Returns the point of generated functions at a time and at step.state. */
 struct Point lane_steps_point(const struct LaneSteps *steps, Lanes time);
 
-/* Evaluates the state at a time within the step into steps->state. */
+/* Evaluates the state at a time within the step into step.state. */
 void lane_steps_take_state(struct LaneSteps *steps, Lanes time);

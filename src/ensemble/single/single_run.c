@@ -7,6 +7,7 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "instance/event_laws.h"
+#include "methods/taylor_rule.h"
 #include "stepping/start.h"
 
 /* Events in a run above which the FMU takes over, which detects Zeno behaviour. */
@@ -23,10 +24,9 @@ struct SingleRun {
   struct Instance instance;
   struct CommunicationStep step; /* the whole run */
   struct LaneSearch *courses;    /* of the lanes; their numbers follow in the same block */
-  /* Of the last loaded lane: origin, order, state and coefficients of its series. */
-  double origin, *state;
-  int order;
-  Series *series; /* [i][0] is the compensation of the state, [i][k] the coefficient k */
+  /* Of the last loaded lane. */
+  double origin;
+  struct TaylorStep last; /* its order, x and low */
 };
 
 /*
@@ -43,22 +43,11 @@ static void destroy_nothing(struct Instance *instance) {
   (void)instance;
 }
 
-/* See taylor_change() of methods/taylor.h. */
-static double change(const double *x, int order, double s) {
-  int j = order;
-  double square = s * s, first = x[j], second = x[j - 1];
-  for (j -= 2; j > 1; j -= 2) {
-    first = first * square + x[j];
-    second = second * square + x[j - 1];
-  }
-  return j == 1 ? ((first * s + second) * s + x[1]) * s : (first * s + second) * s;
-}
-
 static bool interpolate_lane(struct Instance *instance, double time, double *state) {
   const struct SingleRun *run = instance->solver_memory;
   double s = time - run->origin;
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    state[i] = run->state[i] + (change(run->series[i], run->order, s) + run->series[i][0]);
+    state[i] = run->last.x[i][0] + (taylor_change(&run->last, i, s) + run->last.low[i]);
   return true;
 }
 
@@ -94,21 +83,20 @@ static void give_state(const double *state, const struct LaneView *lane) {
 
 static bool ends_with_zeros(const struct SingleRun *run) {
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    if (run->series[i][run->order] != 0.0) return false;
+    if (run->last.x[i][run->last.order] != 0.0) return false;
   return true;
 }
 
 /* Copies the lane's polynomials, which interpolate_lane() reads many times. */
 static void take_series(struct SingleRun *run, const struct LaneView *lane) {
   run->origin = lane->origin;
-  run->order = lane->order;
+  run->last.order = lane->order;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
     const double *row = lane->series + i * SERIES_LENGTH * lane->stride;
-    run->state[i] = row[0];
-    take_numbers(run->series[i] + 1, (size_t)lane->order, row + lane->stride, lane->stride);
-    run->series[i][0] = lane->low[i * lane->stride];
+    take_numbers(run->last.x[i], (size_t)lane->order + 1, row, lane->stride);
+    run->last.low[i] = lane->low[i * lane->stride];
   }
-  while (run->order > 2 && ends_with_zeros(run)) run->order--;
+  while (run->last.order > 2 && ends_with_zeros(run)) run->last.order--;
 }
 
 /* Loads the lane's run into the instance, in its last step. */
@@ -146,8 +134,8 @@ struct SingleRun *single_run_create(size_t lanes, double tolerance, double end) 
   run->instance.fmu_state->tolerance = tolerance;
   run->step = (struct CommunicationStep){.start = 0.0, .end = end, .length = end};
   run->courses = courses;
-  run->series = (Series *)(run + 1);
-  run->state = (double *)(run->series + lagrangian.state_count);
+  run->last.x = (Series *)(run + 1);
+  run->last.low = (double *)(run->last.x + lagrangian.state_count);
   double *number = (double *)(courses + lanes);
   for (size_t i = 0; i < lanes; i++, number += numbers) {
     courses[i].state = number;

@@ -16,7 +16,7 @@
 static double size_of_term(const struct Taylor *taylor, int64_t order) {
   double largest = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    largest = fmax(largest, fabs(taylor->x[i][order]) / taylor_scale(taylor, i));
+    largest = fmax(largest, fabs(taylor->step.x[i][order]) / taylor_scale(&taylor->step, i));
   return largest * pow(taylor->saved->interval, (double)order);
 }
 
@@ -67,9 +67,9 @@ static bool may_be_fast(const struct Taylor *taylor) {
   int64_t order = taylor->saved->order;
   double last = 0.0, before = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double scale = taylor_scale(taylor, i);
-    last = fmax(last, fabs(taylor->x[i][order]) / scale);
-    before = fmax(before, fabs(taylor->x[i][order - 2]) / scale);
+    double scale = taylor_scale(&taylor->step, i);
+    last = fmax(last, fabs(taylor->step.x[i][order]) / scale);
+    before = fmax(before, fabs(taylor->step.x[i][order - 2]) / scale);
   }
   double share = 1.0 / FALL_OF_FAST / taylor->saved->interval;
   return last > share * share * before;

@@ -19,6 +19,7 @@
 #include "evaluation/services.h"
 #include "instance/snapshot.h"
 #include "methods/taylor_interval.h"
+#include "support/arena.h"
 
 static size_t taylor_saved_size(void) {
   return sizeof(struct TaylorSaved) + lagrangian.state_count * (sizeof(double) + sizeof(Series));
@@ -34,20 +35,25 @@ static bool taylor_is_saved_valid(const struct FmuState *fmu_state, const void *
          snapshot_is_finite((const char *)saved + sizeof first, lagrangian.state_count * (1 + SERIES_LENGTH));
 }
 
+static size_t lay_out_taylor(struct Taylor *taylor, void *block) {
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_TAKE(&arena, taylor->input, lagrangian.input_count);
+  ARENA_TAKE(&arena, taylor->work, lagrangian.taylor.rows);
+  ARENA_NUMBERS(&arena, lagrangian.state_count, &taylor->step.term, &taylor->step.derivative, &taylor->step.unit);
+  return arena.next - (uintptr_t)block;
+}
+
 static bool taylor_create(struct Instance *instance) {
-  size_t rows = lagrangian.input_count + lagrangian.taylor.rows;
-  size_t terms = 3 * lagrangian.state_count * sizeof(double);
-  struct Taylor *taylor = instance->memory.allocate(1, sizeof *taylor + rows * sizeof(Series) + terms);
+  struct Taylor counted, *taylor = instance->memory.allocate(1, sizeof *taylor + lay_out_taylor(&counted, NULL));
   if (taylor == NULL) return solver_is_out_of_memory(instance);
+  lay_out_taylor(taylor, taylor + 1);
+  taylor->instance = instance;
   taylor->saved = instance->saved;
+  taylor->step.low = (double *)(taylor->saved + 1);
+  taylor->step.x = (Series *)(taylor->step.low + lagrangian.state_count);
+  taylor->step.state = instance->work;
+  taylor->step.rate = instance->work + lagrangian.state_count + lagrangian.input_count;
   taylor->span = &instance->fmu_state->last_step;
-  taylor->low = (double *)(taylor->saved + 1);
-  taylor->x = (Series *)(taylor->low + lagrangian.state_count);
-  taylor->input = (Series *)(taylor + 1);
-  taylor->work = taylor->input + lagrangian.input_count;
-  taylor->term = (double *)(taylor->work + lagrangian.taylor.rows);
-  taylor->derivative = taylor->term + lagrangian.state_count;
-  taylor->unit = taylor->derivative + lagrangian.state_count;
   instance->solver_memory = taylor;
   return true;
 }
@@ -58,8 +64,8 @@ static bool taylor_create(struct Instance *instance) {
  */
 static bool evaluate_origin(struct Instance *instance, struct Taylor *taylor) {
   if (taylor->is_measured) return true;
-  for (size_t i = 0; i < lagrangian.state_count; i++) instance->work[i] = taylor->x[i][0];
-  instance->singular = taylor_start(instance, taylor, taylor->span->start, taylor->derivative);
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->step.state[i] = taylor->step.x[i][0];
+  instance->singular = taylor_start(taylor, taylor->span->start, taylor->step.derivative);
   return instance->singular == 0;
 }
 
@@ -67,33 +73,25 @@ static bool evaluate_origin(struct Instance *instance, struct Taylor *taylor) {
 static bool expand(struct Instance *instance, struct Taylor *taylor, double communication_step) {
   double origin = taylor->span->start;
   if (!evaluate_origin(instance, taylor)) return false;
-  taylor_measure_scales(taylor);
-  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->x[i][1] = taylor->derivative[i];
+  taylor_measure_scales(&taylor->step);
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->step.x[i][1] = taylor->step.derivative[i];
   for (size_t i = 0; i < lagrangian.input_count; i++) expand_input(instance, i, origin, taylor->input[i]);
   struct Point point = instance_point(instance);
   point.time = origin;
-  lagrangian.taylor.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->x, taylor->work);
+  lagrangian.taylor.series(&point, (int)taylor->saved->order, (const Series *)taylor->input, taylor->step.x,
+                           taylor->work);
   instance->fmu_state->statistics[STATISTIC_DERIVATIVES]++;
   taylor_choose_interval(instance, taylor, communication_step);
   taylor->span->end = origin + taylor->saved->interval;
   return taylor->saved->interval > 0.0;
 }
 
-/*
- * Moves the origin to the end of the step by compensated summation; low takes the rounding error. Returns the largest
- * change in units of the scales.
- */
+/* Moves the origin to the end of the step. Returns the largest change in units of the scales. */
 static double move_origin(struct Taylor *taylor) {
   struct TaylorSaved *saved = taylor->saved;
-  double largest = 0.0;
-  for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double change = taylor->is_measured ? taylor->term[i] : taylor_change(taylor, i, saved->interval);
-    double before = taylor->x[i][0], term = change + taylor->low[i];
-    double sum = before + term, part = sum - before, moved = fabs(term) * taylor->unit[i];
-    if (moved > largest) largest = moved;
-    taylor->low[i] = (before - (sum - part)) + (term - part);
-    taylor->x[i][0] = sum;
-  }
+  for (size_t i = 0; i < lagrangian.state_count && !taylor->is_measured; i++)
+    taylor->step.term[i] = taylor_change(&taylor->step, i, saved->interval);
+  double largest = taylor_move(&taylor->step);
   taylor->span->start = taylor->span->end;
   saved->interval = 0.0;
   return largest;
@@ -104,15 +102,16 @@ struct SeriesRule taylor_rule(const struct Instance *instance) {
 }
 
 static void find_rule(const struct Instance *instance, struct Taylor *taylor) {
-  if (taylor->rule.tolerance != local_tolerance(instance->fmu_state->tolerance)) taylor->rule = taylor_rule(instance);
+  taylor->step.tolerance = local_tolerance(instance->fmu_state->tolerance);
+  if (taylor->rule.tolerance != taylor->step.tolerance) taylor->rule = taylor_rule(instance);
 }
 
 /* Projects the state at the origin onto the constraints. Returns NULL, or the reason for a failure. */
 static const char *keep_constraints(struct Instance *instance, struct Taylor *taylor) {
   if (!solver_has_constraints(instance)) return NULL;
-  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->term[i] = taylor->x[i][0];
-  const char *problem = solver_project(instance, taylor->span->start, taylor->term);
-  for (size_t i = 0; i < lagrangian.state_count && problem == NULL; i++) taylor->x[i][0] = taylor->term[i];
+  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->step.term[i] = taylor->step.x[i][0];
+  const char *problem = solver_project(instance, taylor->span->start, taylor->step.term);
+  for (size_t i = 0; i < lagrangian.state_count && problem == NULL; i++) taylor->step.x[i][0] = taylor->step.term[i];
   taylor->is_measured = false;
   return problem;
 }
@@ -123,10 +122,10 @@ static bool taylor_restart(struct Instance *instance, const double *state, const
   taylor->saved->interval = 0.0;
   taylor->is_measured = false;
   find_rule(instance, taylor);
-  taylor->saved->order = taylor->rule.order;
+  taylor->step.order = taylor->saved->order = taylor->rule.order;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    taylor->low[i] = 0.0;
-    taylor->x[i][0] = state[i];
+    taylor->step.low[i] = 0.0;
+    taylor->step.x[i][0] = state[i];
   }
   return true;
 }
@@ -134,16 +133,33 @@ static bool taylor_restart(struct Instance *instance, const double *state, const
 static void taylor_resume(struct Instance *instance) {
   struct Taylor *taylor = instance->solver_memory;
   taylor->is_measured = false;
+  taylor->step.order = taylor->saved->order;
   find_rule(instance, taylor);
-  taylor_measure_scales(taylor);
+  taylor_measure_scales(&taylor->step);
 }
 
 static bool taylor_interpolate(struct Instance *instance, double time, double *state) {
   const struct Taylor *taylor = instance->solver_memory;
   double s = time - taylor->span->start;
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    state[i] = taylor->x[i][0] + (taylor_change(taylor, i, s) + taylor->low[i]);
+    state[i] = taylor->step.x[i][0] + (taylor_change(&taylor->step, i, s) + taylor->step.low[i]);
   return true;
+}
+
+/* Computes taylor_change() at three times s[3], with three independent chains of operations. */
+static void three_changes(const struct TaylorStep *step, size_t i, const double *s, double *change) {
+  const double *x = step->x[i], squares[] = {s[0] * s[0], s[1] * s[1], s[2] * s[2]};
+  int64_t j = step->order;
+  Pair first = pair_at(x + j - 1), second = first, third = first;
+  for (j -= 2; j > 1; j -= 2) {
+    Pair next = pair_at(x + j - 1);
+    first = pair_sum(pair_multiple(first, squares[0]), next);
+    second = pair_sum(pair_multiple(second, squares[1]), next);
+    third = pair_sum(pair_multiple(third, squares[2]), next);
+  }
+  change[0] = taylor_end_of_change(x, j, first, s[0]);
+  change[1] = taylor_end_of_change(x, j, second, s[1]);
+  change[2] = taylor_end_of_change(x, j, third, s[2]);
 }
 
 static bool taylor_interpolate_at(struct Instance *instance, const double *times, size_t count, double *states) {
@@ -154,8 +170,8 @@ static bool taylor_interpolate_at(struct Instance *instance, const double *times
                         times[k + 2] - taylor->span->start};
     for (size_t i = 0; i < n; i++) {
       double change[3];
-      taylor_three_changes(taylor, i, s, change);
-      for (size_t j = 0; j < 3; j++) states[(k + j) * n + i] = taylor->x[i][0] + (change[j] + taylor->low[i]);
+      three_changes(&taylor->step, i, s, change);
+      for (size_t j = 0; j < 3; j++) states[(k + j) * n + i] = taylor->step.x[i][0] + (change[j] + taylor->step.low[i]);
     }
   }
   for (; k < count; k++) taylor_interpolate(instance, times[k], states + k * n);
@@ -181,7 +197,7 @@ static const char *reason_to_stop(const struct Instance *instance, struct Taylor
   if (!taylor->crosses) taylor->crossing.path += moved;
   else if (stagnates(&taylor->crossing, moved, 1e-9))
     return "a function chatters, as does dry friction that is not written as <friction>";
-  if (!taylor->is_limited && stagnates(&taylor->regular, moved, fmin(instance->fmu_state->tolerance, 1e-6)))
+  if (!taylor->step.is_limited && stagnates(&taylor->regular, moved, fmin(instance->fmu_state->tolerance, 1e-6)))
     return "the system is stiff and needs <solver method=\"auto\"/>";
   return NULL;
 }
@@ -191,7 +207,7 @@ static void cut_series(struct Taylor *taylor) {
   taylor->saved->interval = 0.0;
   taylor->span->end = taylor->span->start;
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    for (int k = 1; k < SERIES_LENGTH; k++) taylor->x[i][k] = 0.0;
+    for (int k = 1; k < SERIES_LENGTH; k++) taylor->step.x[i][k] = 0.0;
 }
 
 static const char *taylor_advance(struct Instance *instance, const struct CommunicationStep *step) {

@@ -22,39 +22,14 @@
 #include <string.h>
 
 #include "evaluation/inputs.h"
-
-/*
- * Returns the change of state variable i from the origin to s after it, with the same bits as taylor_change().
- * Horner's rule gives its time derivative at s alongside.
- */
-static double change_and_rate(const struct Taylor *taylor, size_t i, double s, double *rate) {
-  const double *x = taylor->x[i], square = s * s;
-  int64_t j = taylor->saved->order;
-  Pair sum = pair_at(x + j - 1), by_square = pair_multiple(sum, 0.0);
-  for (j -= 2; j > 1; j -= 2) {
-    by_square = pair_sum(pair_multiple(by_square, square), sum);
-    sum = pair_sum(pair_multiple(sum, square), pair_at(x + j - 1));
-  }
-  double value = pair_second(sum) * s + pair_first(sum);
-  double slope = 2.0 * s * (pair_second(by_square) * s + pair_first(by_square)) + pair_second(sum);
-  if (j == 1) {
-    slope = slope * s + value;
-    value = value * s + x[1];
-  }
-  *rate = slope * s + value;
-  return value * s;
-}
-
-void taylor_measure_scales(struct Taylor *taylor) {
-  for (size_t i = 0; i < lagrangian.state_count; i++) taylor->unit[i] = 1.0 / taylor_scale(taylor, i);
-}
+#include "methods/taylor_defect.h"
 
 /* Finds the largest coefficients of this order and of the one before, in units of the scales. A NaN is kept. */
 static void norms(const struct Taylor *taylor, int64_t order, double *last, double *before) {
   *last = *before = 0.0;
   for (size_t i = 0; i < lagrangian.state_count; i++) {
-    double size = fabs(taylor->x[i][order]) * taylor->unit[i],
-           size_before = fabs(taylor->x[i][order - 1]) * taylor->unit[i];
+    double size = fabs(taylor->step.x[i][order]) * taylor->step.unit[i],
+           size_before = fabs(taylor->step.x[i][order - 1]) * taylor->step.unit[i];
     if (size > *last || isnan(size)) *last = size; /* so that a NaN stays */
     if (size_before > *before || isnan(size_before)) *before = size_before;
   }
@@ -99,7 +74,8 @@ static double predicted_step(const struct Taylor *taylor) {
   return rough_power_of_two(-(of_last > of_before ? of_last : of_before) - taylor->rule.margin);
 }
 
-int taylor_start(struct Instance *instance, const struct Taylor *taylor, double time, double *derivative) {
+int taylor_start(const struct Taylor *taylor, double time, double *derivative) {
+  struct Instance *instance = taylor->instance;
   struct Point point = instance_point(instance);
   point.time = time;
   point.state = instance->work;
@@ -111,69 +87,17 @@ int taylor_start(struct Instance *instance, const struct Taylor *taylor, double 
   return lagrangian.taylor.start(&point, derivative, taylor->work);
 }
 
-/*
- * Evaluates d state / dt at s after the origin, at the state there: x at the origin plus taylor->term. Each number of
- * the state is perturbed by the relative amount share, with alternating signs. False if d state / dt does not exist.
- */
-static bool right_side(struct Instance *instance, const struct Taylor *taylor, double s, double share,
-                       double *derivative) {
-  double *state = instance->work;
-  for (size_t i = 0; i < lagrangian.state_count; i++) {
-    state[i] = taylor->x[i][0] + (taylor->term[i] + taylor->low[i]);
-    if (share != 0.0) state[i] *= 1.0 + (i % 2 == 0 ? share : -share);
-  }
-  return taylor_start(instance, taylor, taylor->span->start + s, derivative) == 0;
-}
-
-/*
- * Returns the largest defect * step that the tolerance allows, in units of the scales. If the coefficients limit the
- * step, the defect grows with s^order, and its integral, the error, is smaller by order + 1.
- */
-static double allowed_defect(const struct Taylor *taylor) {
-  double size = taylor->rule.tolerance;
-  return taylor->is_limited ? size : defect_margin * (double)(taylor->saved->order + 1) * size;
-}
-
-/*
- * Returns the largest defect at s times s, in units of the scales and of allowed_defect(); INFINITY if it does not
- * exist. The coordinates have none: their series are the integrals of those of the velocities. Leaves the changes and
- * rates in term and derivative.
- */
-static double defect(struct Instance *instance, struct Taylor *taylor, double s) {
-  size_t first = lagrangian.coordinate_count, states = lagrangian.state_count;
-  double largest = 0.0, *rate = instance->work + states + lagrangian.input_count;
-  for (size_t i = 0; i < first; i++) taylor->term[i] = taylor_change(taylor, i, s);
-  for (size_t i = first; i < states; i++) taylor->term[i] = change_and_rate(taylor, i, s, &rate[i]);
-  if (!right_side(instance, taylor, s, 0.0, taylor->derivative)) return INFINITY;
-  for (size_t i = first; i < states; i++) {
-    double exact = taylor->derivative[i];
-    double difference = fabs(exact - rate[i]) - rounding * DBL_EPSILON * fabs(exact);
-    double share = difference * s * taylor->unit[i];
-    if (!(share <= largest)) largest = isfinite(share) ? share : INFINITY;
-  }
-  return largest / allowed_defect(taylor);
-}
-
-/*
- * Returns the change of the right side by rounding of the state at s, in the units of defect(), which must precede the
- * call. It is large where forces are differences of large numbers, as in stiff springs.
- */
-static double rounding_of_right_side(struct Instance *instance, struct Taylor *taylor, double s) {
-  size_t states = lagrangian.state_count;
-  double *other = instance->work + states + lagrangian.input_count, largest = 0.0;
-  if (!right_side(instance, taylor, s, 4.0 * DBL_EPSILON, other)) return 0.0;
-  if (!right_side(instance, taylor, s, 0.0, taylor->derivative)) return 0.0;
-  for (size_t i = lagrangian.coordinate_count; i < states; i++)
-    largest = fmax(largest, fabs(other[i] - taylor->derivative[i]) * s * taylor->unit[i]);
-  return largest / allowed_defect(taylor);
+static bool evaluate_derivative(const struct TaylorStep *step, double s, double *derivative) {
+  const struct Taylor *taylor = (const struct Taylor *)step;
+  return taylor_start(taylor, taylor->span->start + s, derivative) == 0;
 }
 
 /* Returns the largest defect inside the step and at its end; stops at the first one that is too large. */
-static double defect_over(struct Instance *instance, struct Taylor *taylor, double s) {
+static double defect_over(const struct Taylor *taylor, double s) {
   double largest = 0.0;
   for (int i = 0; i < DEFECT_POINTS && largest <= 1.0; i++)
-    largest = fmax(largest, defect(instance, taylor, defect_points[i] * s));
-  return fmax(largest, defect(instance, taylor, s));
+    largest = fmax(largest, defect(&taylor->step, defect_points[i] * s));
+  return fmax(largest, defect(&taylor->step, s));
 }
 
 /* Returns the step after the bounds by the functions in the equations (series_limit.h). */
@@ -183,7 +107,7 @@ static struct SeriesLimit limited(const struct Instance *instance, const struct 
   if (lagrangian.taylor.limit == NULL) return limit;
   struct Point point = instance_point(instance);
   point.time = taylor->span->start;
-  lagrangian.taylor.limit(&point, (const Series *)taylor->input, (const Series *)taylor->x,
+  lagrangian.taylor.limit(&point, (const Series *)taylor->input, (const Series *)taylor->step.x,
                           (const Series *)taylor->work, &limit);
   return limit;
 }
@@ -201,7 +125,7 @@ static double exact_interval(const struct Taylor *taylor, double step) {
 /* Reduces the series to Euler's method: at 0 a root has no series, but the accelerations are finite. */
 static void use_euler_step(const struct Taylor *taylor) {
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->x[i][k] = 0.0;
+    for (int64_t k = 2; k <= taylor->saved->order; k++) taylor->step.x[i][k] = 0.0;
 }
 
 /*
@@ -216,17 +140,17 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
                             double length) {
   double step = crossing_share * communication_step, smallest = 2.0 * smallest_step(taylor);
   for (size_t i = 0; i < lagrangian.state_count; i++)
-    step = fmin(step, crossing_share * taylor_scale(taylor, i) / fabs(taylor->x[i][1]));
+    step = fmin(step, crossing_share * taylor_scale(&taylor->step, i) / fabs(taylor->step.x[i][1]));
   step = fmax(step, smallest);
   if (length >= step) return 0.0;
   step = limited(instance, taylor, step, true).step;
   for (int trial = 0; trial < 4 && step > length; trial++) {
     step = exact_interval(taylor, step);
-    double size = defect_over(instance, taylor, step);
+    double size = defect_over(taylor, step);
     if (size <= 1.0) return step;
     if (step <= 2.0 * smallest) {
       use_euler_step(taylor); /* in a step this short, rounding of time hides all higher terms */
-      if (isfinite(defect(instance, taylor, step))) return step;
+      if (isfinite(defect(&taylor->step, step))) return step;
     }
     step = fmax(0.1 * step, fmin(step, smallest));
   }
@@ -237,15 +161,15 @@ static double crossing_step(struct Instance *instance, struct Taylor *taylor, do
  * Shortens the step until its defect is allowed, or explained by rounding, which no shorter step removes. Returns 0
  * below the resolution of time.
  */
-static double shortened(struct Instance *instance, struct Taylor *taylor, double step) {
+static double shortened(struct Taylor *taylor, double step) {
   double power = 1.0 / (double)(taylor->saved->order + 1);
   for (;;) {
     step = exact_interval(taylor, step);
     if (step <= smallest_step(taylor)) return 0.0;
-    double size = taylor->is_limited ? defect_over(instance, taylor, step) : defect(instance, taylor, step);
+    double size = taylor->step.is_limited ? defect_over(taylor, step) : defect(&taylor->step, step);
     if (size <= 1.0) return step;
-    if (isfinite(size) && size <= rounding_margin * rounding_of_right_side(instance, taylor, step)) return step;
-    taylor->is_limited = true;
+    if (isfinite(size) && size <= rounding_margin * rounding_of_right_side(&taylor->step, step)) return step;
+    taylor->step.is_limited = true;
     step *= fmin(fmax(0.9 * pow(size, -power), 0.1), 0.8);
   }
 }
@@ -262,12 +186,12 @@ void taylor_choose_interval(struct Instance *instance, struct Taylor *taylor, do
   if (lagrangian.steps.max_step < step) step = lagrangian.steps.max_step;
   struct SeriesLimit limit = limited(instance, taylor, step, false);
   instance->limited_by = limit.function;
-  taylor->is_limited = limit.step < predicted;
+  taylor->step.is_limited = limit.step < predicted;
   double crossing = 0.0;
   if (predicted == 0.0) use_euler_step(taylor);
   if (predicted == 0.0 || limit.function != NULL)
     crossing = crossing_step(instance, taylor, communication_step, limit.step);
   taylor->crosses = crossing > 0.0;
-  saved->interval = taylor->crosses ? crossing : shortened(instance, taylor, limit.step);
+  saved->interval = taylor->crosses ? crossing : shortened(taylor, limit.step);
   taylor->is_measured = saved->interval > 0.0;
 }

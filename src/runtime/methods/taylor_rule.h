@@ -1,4 +1,4 @@
-/* Order and step of the Taylor method, for one run (taylor_interval.c) and for several at once (src/ensemble). */
+/* Order and steps of the Taylor method, for one run (taylor_interval.c) and for several at once (src/ensemble). */
 #pragma once
 
 #include <math.h>
@@ -80,4 +80,77 @@ static inline struct SeriesRule rule_for(double local) {
     rule.margin = (fall + 0.7 / (double)(order - 1)) / 0.69314718055994530942;
   }
   return rule;
+}
+
+/* A step. Its arrays have an element for each state variable. The state at the origin is x[i][0] + low[i]. */
+struct TaylorStep {
+  int64_t order;
+  double tolerance;     /* local_tolerance() */
+  Condition is_limited; /* something other than the size of the coefficients limits the step */
+  Series *x;            /* coefficients of the state */
+  Real *low;            /* rounding error of the state at the origin */
+  /* The changes of the state over the step, and d state / dt at its end. */
+  Real *term, *derivative;
+  Real *unit;         /* 1 / taylor_scale() at the origin */
+  Real *state, *rate; /* workspace: a state, and the derivatives of the polynomials */
+};
+
+/* Returns the scale of state variable i: its absolute value at the origin, at least its nominal value. */
+static inline Real taylor_scale(const struct TaylorStep *step, size_t i) {
+  Real size = FUNCTION(fabs)(step->x[i][0]);
+  return WHERE(size < lagrangian.steps.nominal[i], lagrangian.steps.nominal[i], size);
+}
+
+static inline void taylor_measure_scales(const struct TaylorStep *step) {
+  for (size_t i = 0; i < lagrangian.state_count; i++) step->unit[i] = 1.0 / taylor_scale(step, i);
+}
+
+/* Combines Horner's sums over even and odd powers into the change of the state. At odd orders (j = 1) it adds x[1]. */
+static inline Real taylor_end_of_change(const Real *x, int64_t j, Pair sum, Real s) {
+  Real change = (pair_second(sum) * s + pair_first(sum)) * s;
+  return j == 1 ? (change + x[1]) * s : change;
+}
+
+/* Returns the change of state variable i from the origin to s after it, by Horner's rule for even and odd powers. */
+static inline Real taylor_change(const struct TaylorStep *step, size_t i, Real s) {
+  const Real *x = step->x[i], square = s * s;
+  int64_t j = step->order;
+  Pair sum = pair_at(x + j - 1);
+  for (j -= 2; j > 1; j -= 2) sum = pair_sum(pair_multiple(sum, square), pair_at(x + j - 1));
+  return taylor_end_of_change(x, j, sum, s);
+}
+
+/* Returns the same to equal bits, and sets step->rate[i], the time derivative at s, alongside. */
+static inline Real taylor_change_and_rate(const struct TaylorStep *step, size_t i, Real s) {
+  const Real *x = step->x[i], square = s * s;
+  int64_t j = step->order;
+  Pair sum = pair_at(x + j - 1), by_square = pair_multiple(sum, REAL(0.0));
+  for (j -= 2; j > 1; j -= 2) {
+    by_square = pair_sum(pair_multiple(by_square, square), sum);
+    sum = pair_sum(pair_multiple(sum, square), pair_at(x + j - 1));
+  }
+  Real value = pair_second(sum) * s + pair_first(sum);
+  Real slope = 2.0 * s * (pair_second(by_square) * s + pair_first(by_square)) + pair_second(sum);
+  if (j == 1) {
+    slope = slope * s + value;
+    value = value * s + x[1];
+  }
+  step->rate[i] = slope * s + value;
+  return value * s;
+}
+
+/*
+ * Moves the origin by term with compensated summation; low takes the rounding error. Returns the largest change in
+ * units of the scales.
+ */
+static inline Real taylor_move(const struct TaylorStep *step) {
+  Real largest = REAL(0.0);
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    Real before = step->x[i][0], term = step->term[i] + step->low[i];
+    Real sum = before + term, part = sum - before, moved = FUNCTION(fabs)(term) * step->unit[i];
+    largest = WHERE(moved > largest, moved, largest);
+    step->low[i] = (before - (sum - part)) + (term - part);
+    step->x[i][0] = sum;
+  }
+  return largest;
 }
