@@ -96,7 +96,14 @@ def rocking_column():
     )
 
 
+# A box that moves in a vertical plane.
+THROWN_IN_PLANE = f"""<shape name="floor" type="plane"/><coordinate name="ax" velocity="avx" unit="m"/><coordinate name="az" velocity="avz" unit="m" start="0.4"/>
+  <coordinate name="aa" velocity="aw" unit="rad"/><frame name="a"><translate x="ax" z="az"/><rotate axis="y" angle="aa"/></frame>
+  <body name="aBody" in="a" mass="m" Ixx="0.03" Iyy="0.03" Izz="0.03"/><shape name="aShape" in="a" type="box" sizeX="0.3" sizeZ="0.2"/>{CONTACT.format("c", "aShape", "floor")}"""
+
+
 TEXTS = {
+    "ThrownInPlane": THROWN_IN_PLANE,
     "RockingColumn": rocking_column(),
     "PushedColumn": column(),
     "Heap": heap(),
@@ -301,6 +308,14 @@ def test_rocking_column(mu, spins, slides):
     weights = [instance.get(f"c{k}[1].force") + instance.get(f"c{k}[2].force") for k in (1, 2, 3)]
     assert weights == pytest.approx([3 * 2 * 9.81, 2 * 2 * 9.81, 2 * 9.81], rel=1e-9)
     assert energies[-1] == pytest.approx(2 * 9.81 * sum(instance.get("b1z", "b2z", "b3z")), abs=1e-9)
+    instance.free()
+
+
+def test_a_box_lands_while_it_creeps():
+    """The friction of one corner creeps where that of the other one sticks, and stops with it."""
+    values = {"mu": 0.37081416067949374, "e": 0.3, "aa": 0.7292743564716355, "avx": -1.397045628314454, "avz": -0.7565318281430371, "aw": -1.1113084408259906}
+    instance, energies = run("ThrownInPlane", values, 2.0)
+    assert energies[-1] == pytest.approx(2 * 9.81 * instance.get("az"), abs=1e-9) and instance.get("az") == pytest.approx(0.1, abs=1e-9)
     instance.free()
 
 

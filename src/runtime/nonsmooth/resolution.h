@@ -114,6 +114,8 @@ struct FrictionLaws {
    * once in an event resolution. False if there are none. NULL without frictions in planes.
    */
   bool (*resolve_together)(struct Resolution *resolution);
+  /* let_stopped_slip() of contact_impulses.h; NULL without frictions in planes. */
+  bool (*slip_where_stopped)(struct Resolution *resolution);
   /* Lets the friction in a plane slide or stick; NULL without any. */
   void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
   /*

@@ -154,11 +154,14 @@ static const char *check_laws(struct Resolution *resolution) {
  * Projects the state for the final modes: the last forces may be those of modes that were tried. An importer that
  * integrates projects its state itself, in event mode.
  */
-static const char *keep_on_constraints(const struct Resolution *resolution) {
+static const char *keep_on_constraints(struct Resolution *resolution) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
   bool has_to_keep = resolution->occasion != AT_START && resolution->occasion != IN_EXCHANGE;
   if (!resolution->changed || !has_to_keep) return NULL;
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return constraints_not_kept;
-  return solver_project(resolution->instance, resolution->time, resolution->state);
+  const char *problem = solver_project(resolution->instance, resolution->time, resolution->state);
+  bool may_stop = problem == NULL && laws != NULL && laws->slip_where_stopped != NULL;
+  return may_stop && !laws->slip_where_stopped(resolution) ? no_accelerations : problem;
 }
 
 bool resolve_explain(struct Instance *instance, double time, double *state) {

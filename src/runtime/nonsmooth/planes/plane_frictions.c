@@ -175,6 +175,7 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .explain_jam = frictions_explain_jam,
                                                  .guess = guess,
                                                  .resolve_together = plane_forces_resolve,
+                                                 .slip_where_stopped = let_stopped_slip,
                                                  .set_plane = set_plane,
                                                  .find_impulses = cone_impulses_find,
                                                  .has_other_impulses = cone_impulses_have_others};
