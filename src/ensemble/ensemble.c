@@ -139,8 +139,8 @@ static const Lanes *accelerations(struct LaneEvents *events, Lanes time, Mask *i
 }
 
 /*
- * Samples the recorded variables at a time of each lane and at steps->step.state, in the reached lanes. run, slot: of each
- * lane, the run and the index of the time. Returns the lanes in which a value is not finite.
+ * Samples the recorded variables at a time of each lane and at steps->step.state, in the reached lanes. run, slot: of
+ * each lane, the run and the index of the time. Returns the lanes in which a value is not finite.
  */
 static Mask report_values(const struct Ensemble *ensemble, struct LaneEvents *events, Lanes time, Mask is_reached,
                           const size_t *run, const size_t *slot) {

@@ -38,7 +38,10 @@ Mask lane_events_find(struct LaneEvents *events, Mask active);
  */
 Mask lane_events_continue(struct LaneEvents *events, Mask active);
 
-/* Computes accelerations and forces of a constrained system at steps->step.state. Returns the lanes in which that fails. */
+/*
+ * Computes accelerations and forces of a constrained system at steps->step.state. Returns the lanes in which that
+ * fails.
+ */
 Mask lane_events_accelerations(struct LaneEvents *events, Lanes time);
 
 /* Projects steps->step.state at each lane's time onto its closed constraints. Returns the lanes in which that fails. */

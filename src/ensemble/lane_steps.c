@@ -137,11 +137,6 @@ static Mask evaluate_derivative(const struct TaylorStep *step, Lanes s, Lanes *d
   return ~failed_lanes;
 }
 
-/* Returns the larger one; INFINITY if size is NaN. */
-static Lanes larger_or_infinite(Lanes largest, Lanes size) {
-  return lanes_select(size <= largest, largest, lanes_select(size < INFINITY, size, LANES_OF(INFINITY)));
-}
-
 /* Returns the largest defect at the end; if the coefficients do not limit the step, also inside it. */
 static Lanes defect_over(struct LaneSteps *steps, Lanes s) {
   Lanes inside = {0};

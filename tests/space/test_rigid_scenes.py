@@ -85,25 +85,25 @@ def column():
   <parameter name="height" start="0" unit="m"/><point name="pushed" in="b2" z="height"/><force on="pushed" x="rate*time*cos(dir)" y="rate*time*sin(dir)"/>"""
 
 
+def in_plane(name, height, shape):
+    """A body with a shape that moves in a vertical plane."""
+    return f"""<coordinate name="{name}x" velocity="{name}vx" unit="m"/><coordinate name="{name}z" velocity="{name}vz" unit="m" start="{height}"/>
+  <coordinate name="{name}a" velocity="{name}w" unit="rad"/><frame name="{name}"><translate x="{name}x" z="{name}z"/><rotate axis="y" angle="{name}a"/></frame>
+  <body name="{name}Body" in="{name}" mass="m" Ixx="0.03" Iyy="0.03" Izz="0.03"/><shape name="{name}Shape" in="{name}" {shape}/>"""
+
+
 def rocking_column():
     """Three square boxes on each other that move in a vertical plane."""
     return '<shape name="floor" type="plane"/>' + "".join(
-        f"""<coordinate name="b{k}x" velocity="b{k}vx" unit="m"/><coordinate name="b{k}z" velocity="b{k}vz" unit="m" start="{0.2 * k - 0.1}"/>
-  <coordinate name="b{k}a" velocity="b{k}w" unit="rad"/><frame name="b{k}"><translate x="b{k}x" z="b{k}z"/><rotate axis="y" angle="b{k}a"/></frame>
-  <body name="b{k}Body" in="b{k}" mass="m" Ixx="0.03" Iyy="0.03" Izz="0.03"/><shape name="sole{k}" in="b{k}" type="box" sizeX="0.2" z="-0.1"/>
-  <shape name="top{k}" in="b{k}" type="plane" z="0.1"/>{CONTACT.format(f"c{k}", f"sole{k}", f"top{k - 1}" if k > 1 else "floor")}"""
+        in_plane(f"b{k}", 0.2 * k - 0.1, 'type="box" sizeX="0.2" z="-0.1"')
+        + f'<shape name="top{k}" in="b{k}" type="plane" z="0.1"/>'
+        + CONTACT.format(f"c{k}", f"b{k}Shape", f"top{k - 1}" if k > 1 else "floor")
         for k in (1, 2, 3)
     )
 
 
-# A box that moves in a vertical plane.
-THROWN_IN_PLANE = f"""<shape name="floor" type="plane"/><coordinate name="ax" velocity="avx" unit="m"/><coordinate name="az" velocity="avz" unit="m" start="0.4"/>
-  <coordinate name="aa" velocity="aw" unit="rad"/><frame name="a"><translate x="ax" z="az"/><rotate axis="y" angle="aa"/></frame>
-  <body name="aBody" in="a" mass="m" Ixx="0.03" Iyy="0.03" Izz="0.03"/><shape name="aShape" in="a" type="box" sizeX="0.3" sizeZ="0.2"/>{CONTACT.format("c", "aShape", "floor")}"""
-
-
 TEXTS = {
-    "ThrownInPlane": THROWN_IN_PLANE,
+    "ThrownInPlane": in_plane("a", 0.4, 'type="box" sizeX="0.3" sizeZ="0.2"') + '<shape name="floor" type="plane"/>' + CONTACT.format("c", "aShape", "floor"),
     "RockingColumn": rocking_column(),
     "PushedColumn": column(),
     "Heap": heap(),

@@ -24,9 +24,8 @@ struct SingleRun {
   struct Instance instance;
   struct CommunicationStep step; /* the whole run */
   struct LaneSearch *courses;    /* of the lanes; their numbers follow in the same block */
-  /* Of the last loaded lane. */
-  double origin;
-  struct TaylorStep last; /* its order, x and low */
+  double origin;                 /* of the series in the lane that was loaded last */
+  struct TaylorStep last;        /* this series, of which order, x and low are used */
 };
 
 /*

@@ -25,6 +25,11 @@ static Real allowed_defect(const struct TaylorStep *step) {
   return WHERE(step->is_limited, step->tolerance, defect_margin * (double)(step->order + 1) * step->tolerance);
 }
 
+/* Returns the larger one; INFINITY if size is NaN. */
+static Real larger_or_infinite(Real largest, Real size) {
+  return WHERE(size <= largest, largest, WHERE(size < INFINITY, size, INFINITY));
+}
+
 /*
  * Returns the largest defect at s times s, in units of the scales and of allowed_defect(); INFINITY if it does not
  * exist. The coordinates have none: their series are the integrals of those of the velocities. Leaves the changes and
@@ -39,8 +44,7 @@ static Real defect(const struct TaylorStep *step, Real s) {
   for (size_t i = first; i < states; i++) {
     Real exact = step->derivative[i];
     Real difference = FUNCTION(fabs)(exact - step->rate[i]) - rounding * DBL_EPSILON * FUNCTION(fabs)(exact);
-    Real share = difference * s * step->unit[i];
-    largest = WHERE(share <= largest, largest, WHERE(share < INFINITY, share, INFINITY));
+    largest = larger_or_infinite(largest, difference * s * step->unit[i]);
   }
   return WHERE(exists, largest / allowed_defect(step), INFINITY);
 }

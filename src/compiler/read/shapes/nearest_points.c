@@ -139,23 +139,35 @@ void capsules_contact(const struct ShapePair *pair, struct ContactPoints *contac
   append_ball_contact(pair, nearest.first, between, pair->second->shape->radius, contacts);
 }
 
-/* Returns the edge of the second shape, a box, along an axis; upper: on which sides of the two following axes it is. */
-static struct Segment edge_of_box(const struct ShapePair *pair, int axis, const bool upper[2]) {
+/* An edge of a box along an axis. upper: on which sides of the two following axes it is. */
+struct BoxEdge {
+  int axis;
+  bool upper[2];
+};
+
+/* Lists the edges that have a length; of those that coincide at a box without size along an axis the first one. */
+static size_t list_edges(const struct ContactShape *box, struct BoxEdge edges[BOX_EDGES]) {
+  size_t count = 0;
+  for (int i = 0; i < BOX_EDGES; i++) {
+    struct BoxEdge edge = {i % 3, {(i / 3 & 1) != 0, i / 6 != 0}};
+    bool coincides = false;
+    for (int side = 0; side < 2; side++) coincides |= edge.upper[side] && box->is_flat[(edge.axis + 1 + side) % 3];
+    if (!box->is_flat[edge.axis] && !coincides) edges[count++] = edge;
+  }
+  return count;
+}
+
+/* Returns an edge of the second shape, a box, along the base's axes. */
+static struct Segment segment_of_edge(const struct ShapePair *pair, const struct BoxEdge *edge) {
   struct Graph *graph = pair->graph;
   struct Vector size = pair->second->shape->size, middle = {{ZERO, ZERO, ZERO}}, direction = middle;
   for (int side = 0; side < 2; side++) {
-    int across = (axis + 1 + side) % 3;
-    middle.along[across] = scale(graph, upper[side] ? 0.5 : -0.5, size.along[across]);
+    int across = (edge->axis + 1 + side) % 3;
+    middle.along[across] = scale(graph, edge->upper[side] ? 0.5 : -0.5, size.along[across]);
   }
-  direction.along[axis] = ONE;
+  direction.along[edge->axis] = ONE;
   middle = vector_add(graph, middle_of(pair, pair->second), rotated_by(pair, pair->second, middle));
-  return (struct Segment){middle, rotated_by(pair, pair->second, direction), size.along[axis]};
-}
-
-/* True for edges with a length, of those that coincide at a box without size along an axis the first one. */
-static bool is_edge(const struct ContactShape *box, int axis, const bool upper[2]) {
-  return !box->is_flat[axis] && !(upper[0] && box->is_flat[(axis + 1) % 3]) &&
-         !(upper[1] && box->is_flat[(axis + 2) % 3]);
+  return (struct Segment){middle, rotated_by(pair, pair->second, direction), size.along[edge->axis]};
 }
 
 /*
@@ -192,19 +204,16 @@ void capsule_on_box_contacts(const struct ShapePair *pair, struct ContactPoints 
     Node half = scale(graph, end == 0 ? 0.5 : -0.5, pair->first->shape->length);
     append_box_contact(pair, vector_add(graph, middle, vector_scale(graph, half, axis)), contacts);
   }
-  for (int i = 0; i < BOX_EDGES; i++) {
-    const bool upper[] = {(i / 3 & 1) != 0, (i / 6) != 0};
-    struct Segment edge = edge_of_box(pair, i % 3, upper);
-    if (is_edge(pair->second->shape, i % 3, upper)) append_edge_contact(pair, &edge, contacts);
+  struct BoxEdge edges[BOX_EDGES];
+  size_t count = list_edges(pair->second->shape, edges);
+  for (size_t i = 0; i < count; i++) {
+    struct Segment edge = segment_of_edge(pair, &edges[i]);
+    append_edge_contact(pair, &edge, contacts);
   }
   carry_by_first(pair, contacts);
 }
 
 size_t count_points_of_capsule_on_box(const struct ContactShape *box) {
-  size_t count = 2;
-  for (int i = 0; i < BOX_EDGES; i++) {
-    const bool upper[] = {(i / 3 & 1) != 0, (i / 6) != 0};
-    count += is_edge(box, i % 3, upper) ? 1 : 0;
-  }
-  return count;
+  struct BoxEdge edges[BOX_EDGES];
+  return 2 + list_edges(box, edges);
 }

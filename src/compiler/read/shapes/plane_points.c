@@ -12,8 +12,8 @@
 enum { END_POINTS = 8, STANDING_POINTS = 2 * END_POINTS, CYLINDER_ENDS = 2, MOST_POINTS = MOST_CORNERS };
 
 /*
- * A rim's lowest point has no direction where a cylinder stands upright on the plane. Let y be the square of the sine of
- * its tilt over that of least_sine. Below y = 1 the rim reaches below its centre by 3/8 + 3/4 y - y^2/8, in units of
+ * A rim's lowest point has no direction where a cylinder stands upright on the plane. Let y be the square of the sine
+ * of its tilt over that of least_sine. Below y = 1 the rim reaches below its centre by 3/8 + 3/4 y - y^2/8, in units of
  * least_sine times the radius. That has the value and two derivatives of the sine at y = 1, and its lowest point is
  * never farther from the axis than the radius. A wheel may lie on that dome, which is wider then.
  */
@@ -58,11 +58,17 @@ static void append_corners(struct Graph *graph, struct BallCentres *points, cons
   }
 }
 
+/* Appends both ends of the axis of a cylinder or capsule. */
+static void append_ends_of_axis(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
+  append_point(graph, points, shape, along_axis(shape, scale(graph, 0.5, shape->length)));
+  append_point(graph, points, shape, along_axis(shape, scale(graph, -0.5, shape->length)));
+}
+
 /*
  * Appends the points on which each end stands, then the centres of both ends. The first point of an end is on the axis
  * that follows the cylinder's cyclically.
  */
-static void append_ends(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
+static void append_cylinder_points(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
   static const double half = 0.70710678118654752440;
   static const double circle[END_POINTS][2] = {{1, 0},  {half, half},   {0, 1},  {-half, half},
                                                {-1, 0}, {-half, -half}, {0, -1}, {half, -half}};
@@ -73,8 +79,7 @@ static void append_ends(struct Graph *graph, struct BallCentres *points, const s
     point.along[beside] = scale(graph, circle[i % END_POINTS][1], shape->radius);
     append_point(graph, points, shape, point);
   }
-  append_point(graph, points, shape, along_axis(shape, scale(graph, 0.5, shape->length)));
-  append_point(graph, points, shape, along_axis(shape, scale(graph, -0.5, shape->length)));
+  append_ends_of_axis(graph, points, shape);
 }
 
 static void append_mesh_corners(struct Graph *graph, struct BallCentres *points, const struct ContactShape *shape) {
@@ -96,11 +101,10 @@ static struct BallCentres points_of(struct Graph *graph, const struct ContactSha
     break;
   case SHAPE_CAPSULE:
     points.radius = shape->radius;
-    append_point(graph, &points, shape, along_axis(shape, scale(graph, 0.5, shape->length)));
-    append_point(graph, &points, shape, along_axis(shape, scale(graph, -0.5, shape->length)));
+    append_ends_of_axis(graph, &points, shape);
     break;
   case SHAPE_BOX: append_corners(graph, &points, shape); break;
-  case SHAPE_CYLINDER: append_ends(graph, &points, shape); break;
+  case SHAPE_CYLINDER: append_cylinder_points(graph, &points, shape); break;
   case SHAPE_MESH: append_mesh_corners(graph, &points, shape); break;
   default: break;
   }
@@ -125,8 +129,9 @@ void plane_contacts(const struct ShapePair *pair, struct ContactPoints *contacts
 }
 
 /*
- * A height in radii as a function of the part of the plane's normal across the cylinder's axis. Its gradient is that part
- * times a factor. The gap is a function of the normal, whose gradient is the material point that moves with the gap.
+ * A height in radii as a function of the part of the plane's normal across the cylinder's axis. Its gradient is that
+ * part times a factor. The gap is a function of the normal, whose gradient is the material point that moves with the
+ * gap.
  */
 struct HeightByTilt {
   Node height, gradient;

@@ -24,7 +24,6 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/tolerances.h"
 #include "evaluation/evaluate.h"
-#include "evaluation/services.h"
 #include "nonsmooth/continuity.h"
 #include "detection/indicators.h"
 #include "nonsmooth/resolution.h"

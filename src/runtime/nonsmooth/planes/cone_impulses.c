@@ -146,8 +146,8 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
 }
 
 /*
- * Finds forces by an interior path, in the middle of those that are possible; else by sweeps from no force. Returns their
- * relative residual.
+ * Finds forces by an interior path, in the middle of those that are possible; else by sweeps from no force. Returns
+ * their relative residual.
  */
 static double fulfil_law_of_forces(struct Cones *cones, double *best, double *swept, double *work) {
   double miss = cone_interior(cones, law_holds, true, work);

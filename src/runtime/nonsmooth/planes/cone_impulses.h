@@ -12,8 +12,8 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
 
 /*
  * Finds forces at rest: impulses of the same law, with the accelerations as rates. Where several sets of forces fulfil
- * it, these have a margin to their limits. error: twice the residual, a bound of the accelerations' errors. False if none
- * are found.
+ * it, these have a margin to their limits. error: twice the residual, a bound of the accelerations' errors. False if
+ * none are found.
  */
 bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                       double *force, double *error);
