@@ -372,6 +372,10 @@ def test_pressing_where_time_alone_moves_along_the_normal(open_fmu):
         assert force == pytest.approx(max(0, 4e4 * depth * (1 + 0.5 * rate)), abs=1e-9)
 
 
+BOXES = """<shape name="s" type="box" sizeX="r" sizeY="r"{}/><shape name="t" type="box" sizeX="r" sizeY="r" sizeZ="r"/>
+  <contact name="q" between="s" and="t"{}/>"""
+
+
 @pytest.mark.parametrize(
     "text, message",
     [
@@ -381,6 +385,8 @@ def test_pressing_where_time_alone_moves_along_the_normal(open_fmu):
         ('<contact between="floor" and="floor2" stiffness="k"/>', "there is no <contact> between such shapes as 'floor' and 'floor2'"),
         ('<shape name="s" type="sphere"/>', "the sphere 's' has no radius"),
         ('<shape name="s" type="sphere" radius="r" sizeX="r"/>', "is a sphere, which has no sizeX"),
+        (BOXES.format(' sizeZ="r"', ""), "the <contact> of the boxes 's' and 't' is rigid; expected stiffness="),
+        (BOXES.format("", ' stiffness="k"'), "the box 's' has no size along z, and touches no other box"),
         ('<contact between="skin" and="skin" stiffness="k"/>', "a <contact> is between 'skin' and itself"),
         ('<contact between="skin" and="floor" stiffness="k" friction="mu" creep="0"/>', "the creep of a <contact> is 0"),
         ('<shape name="s" type="sphere" radius="r" axis="x"/>', "is a sphere, which takes no axis"),

@@ -19,8 +19,11 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/* Most nodes below the equations, counted once for each, for formulas: their C has some 30 bytes a node. */
-enum { GRADIENT_LIMIT = 100000 };
+/*
+ * Nodes below the equations, counted once for each: most for formulas, whose C has some 30 bytes a node, and most for
+ * formulas without a comparison to directional derivatives.
+ */
+enum { GRADIENT_LIMIT = 100000, DIRECTIONS_LIMIT = 20000 };
 
 /* The kinds of symbols of the state, as bits. */
 enum { STATE_KINDS = 1 << COORDINATE | 1 << VELOCITY | 1 << STATE };
@@ -179,14 +182,20 @@ static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, c
   return jacobian;
 }
 
-/* True if gradients of all equations would be too long; a gradient is about as long as its equation. */
+/*
+ * True if gradients of all equations would be too long, or long and longer than a directional derivative along each
+ * state. A gradient takes up to four times the operations of its equation, a directional derivative about as many as all
+ * equations.
+ */
 static bool are_long(struct Graph *graph, const struct Equations *equations) {
-  size_t sum = 0;
+  size_t sum = 0, columns = 2 * equations->count + equations->rates.count;
   for (size_t i = 0; i < row_count(equations) && sum <= GRADIENT_LIMIT; i++) {
     cone_collect(graph->cone, graph, &equations->residual[i], 1);
     sum += graph->cone->count;
   }
-  return sum > GRADIENT_LIMIT;
+  if (sum <= DIRECTIONS_LIMIT || sum > GRADIENT_LIMIT) return sum > GRADIENT_LIMIT;
+  cone_collect(graph->cone, graph, equations->residual, row_count(equations));
+  return 4 * sum > columns * graph->cone->count;
 }
 
 static bool needs_directions(struct Graph *graph, const struct Equations *equations) {

@@ -3,6 +3,7 @@
 
 #include "algebra/simplify.h"
 #include "base/memory.h"
+#include "read/shapes/box_points.h"
 #include "read/shapes/nearest_points.h"
 #include "read/shapes/plane_points.h"
 
@@ -27,7 +28,7 @@ typedef void ContactFunction(const struct ShapePair *pair, struct ContactPoints 
 /* By types of the first and second shape. Pairs in the other order are exchanged. */
 static ContactFunction *const functions[SHAPE_TYPES][SHAPE_TYPES] = {
     [SHAPE_SPHERE] = {plane_contacts, sphere_contact, box_contact, cylinder_contact, capsule_contact},
-    [SHAPE_BOX] = {plane_contacts},
+    [SHAPE_BOX] = {plane_contacts, [SHAPE_BOX] = boxes_contacts},
     [SHAPE_CYLINDER] = {rim_contacts},
     [SHAPE_CAPSULE] = {plane_contacts, [SHAPE_BOX] = capsule_on_box_contacts, [SHAPE_CAPSULE] = capsules_contact},
     [SHAPE_MESH] = {plane_contacts},
@@ -39,6 +40,7 @@ static size_t count_points(const struct ContactShape *first, const struct Contac
   ContactFunction *append_contacts = functions[first->type][second->type];
   if (append_contacts == NULL) return 0;
   if (append_contacts == capsule_on_box_contacts) return count_points_of_capsule_on_box(second);
+  if (append_contacts == boxes_contacts) return POINTS_OF_BOXES;
   return second->type == SHAPE_PLANE ? count_points_on_plane(first) : 1;
 }
 

@@ -185,18 +185,6 @@ static void append_edge_contact(const struct ShapePair *pair, const struct Segme
   point->gap = add(graph, point->gap, grown);
 }
 
-/* Notes where the points are in the frame of the first shape, which carries them. */
-static void carry_by_first(const struct ShapePair *pair, struct ContactPoints *contacts) {
-  struct Graph *graph = pair->graph;
-  const struct Pose *pose = &pair->first->pose;
-  contacts->carrier = pair->first;
-  contacts->below = (struct Vector){{ZERO, ZERO, ZERO}};
-  for (size_t i = 0; i < contacts->count; i++) {
-    struct ContactPoint *point = &contacts->items[i];
-    point->offset = matrix_apply_transposed(graph, &pose->rotation, vector_subtract(graph, point->point, pose->origin));
-  }
-}
-
 void capsule_on_box_contacts(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   struct Vector middle = middle_of(pair, pair->first), axis = axis_of(pair, pair->first);

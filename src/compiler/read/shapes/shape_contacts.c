@@ -68,6 +68,28 @@ static const char *only_on_planes(const struct ContactShape *shape) {
   return shape->type == SHAPE_MESH ? "a mesh" : shape->type == SHAPE_ELLIPSOID ? "an ellipsoid" : NULL;
 }
 
+/* Returns false after reporting two boxes whose contact is rigid, or one of which is flat. */
+static bool check_boxes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
+  if (shapes[0]->type != SHAPE_BOX || shapes[1]->type != SHAPE_BOX) return true;
+  if (!is_compliant(node)) {
+    report_at(reader, node,
+              "the <contact> of the boxes '%s' and '%s' is rigid; expected stiffness=\"...\" in N/m, or a plane in "
+              "place of one of them",
+              shapes[0]->name, shapes[1]->name);
+    return false;
+  }
+  for (int i = 0; i < 2; i++)
+    for (int axis = 0; axis < 3; axis++)
+      if (shapes[i]->is_flat[axis]) {
+        report_at(
+            reader, node,
+            "the box '%s' has no size along %c, and touches no other box; expected a size above 0 along each axis",
+            shapes[i]->name, "xyz"[axis]);
+        return false;
+      }
+  return true;
+}
+
 /* Finds both shapes. Returns false after reporting that one is missing or that they cannot touch. */
 static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
   shapes[0] = shape_of_attribute(reader, node, "between");
@@ -79,6 +101,7 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
   }
   for (int i = 0; i < 2; i++)
     if (shapes[1 - i]->type == SHAPE_PLANE && !prepare_corners(reader, node, shapes[i])) return false;
+  if (!check_boxes(reader, node, shapes)) return false;
   if (count_contact_points(shapes[0], shapes[1]) > 0) return true;
   const char *type = only_on_planes(shapes[0]);
   if (type == NULL) type = only_on_planes(shapes[1]);
@@ -90,7 +113,7 @@ static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct Con
   report_at(
       reader, node,
       "there is no <contact> between such shapes as '%s' and '%s'; expected a sphere or a plane as one of them, two "
-      "capsules, or a capsule and a box",
+      "capsules, two boxes, or a capsule and a box",
       shapes[0]->name, shapes[1]->name);
   return false;
 }

@@ -25,3 +25,14 @@ struct Vector axis_of(const struct ShapePair *pair, const struct ContactSide *si
 struct Vector middle_of(const struct ShapePair *pair, const struct ContactSide *side) {
   return position_at(pair->graph, &side->pose, side->shape->offset);
 }
+
+void carry_by_first(const struct ShapePair *pair, struct ContactPoints *contacts) {
+  struct Graph *graph = pair->graph;
+  const struct Pose *pose = &pair->first->pose;
+  contacts->carrier = pair->first;
+  contacts->below = (struct Vector){{ZERO, ZERO, ZERO}};
+  for (size_t i = 0; i < contacts->count; i++) {
+    struct ContactPoint *point = &contacts->items[i];
+    point->offset = matrix_apply_transposed(graph, &pose->rotation, vector_subtract(graph, point->point, pose->origin));
+  }
+}

@@ -47,3 +47,6 @@ struct Vector seen_by(const struct ShapePair *pair, const struct ContactSide *si
 /* Return the axis and the centre of a shape, along the base's axes. */
 struct Vector axis_of(const struct ShapePair *pair, const struct ContactSide *side);
 struct Vector middle_of(const struct ShapePair *pair, const struct ContactSide *side);
+
+/* Notes where the points are in the frame of the first shape, which carries them. */
+void carry_by_first(const struct ShapePair *pair, struct ContactPoints *contacts);
