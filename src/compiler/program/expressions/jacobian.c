@@ -20,8 +20,8 @@
 #include "base/memory.h"
 
 /*
- * Nodes below the equations, counted once for each: most for formulas, whose C has some 30 bytes a node, and most for
- * formulas without a comparison to directional derivatives.
+ * Most nodes below the equations, counted once for each: for formulas, whose C has some 30 bytes a node, and for
+ * formulas that are not compared with directions.
  */
 enum { GRADIENT_LIMIT = 100000, DIRECTIONS_LIMIT = 20000 };
 
