@@ -1,6 +1,6 @@
 """
-Masonry stands for 100 s or falls: an arch of stones, a house of cards and a column of ten boxes. Limit analysis is a linear program
-that knows nothing of motion, and says whether an arch stands (Livesley, Limit analysis of structures formed from rigid blocks, 1978).
+Masonry stands for 100 s or falls: an arch of stones, a house of cards and a column of ten boxes. Limit analysis says whether an
+arch stands, by a linear program without motion (Livesley, Limit analysis of structures formed from rigid blocks, 1978).
 """
 
 import math

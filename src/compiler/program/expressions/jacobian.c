@@ -19,10 +19,7 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/*
- * Most nodes below the equations, counted once for each: for formulas, whose C has some 30 bytes a node, and for
- * formulas that are not compared with directions.
- */
+/* Most nodes below the equations, counted once for each. Formulas have some 30 bytes of C a node; short ones are kept. */
 enum { GRADIENT_LIMIT = 100000, DIRECTIONS_LIMIT = 20000 };
 
 /* The kinds of symbols of the state, as bits. */
