@@ -256,14 +256,16 @@ static void let_moving_slide(struct Resolution *resolution) {
   }
 }
 
+/* Lets a friction of the contact stick if it does not slide. */
+static void stick_if_stopped(struct Resolution *resolution, size_t contact, size_t friction) {
+  size_t velocity = friction_slot(resolution->switches, friction, FRICTION_VELOCITY);
+  bool slides = sliding_speed(resolution, friction) > resolution->error_bound[velocity];
+  if (rests_on(resolution->switches, friction, contact) && !slides) set_friction(resolution, friction, 0.0);
+}
+
 /* Lets frictions stick that do not slide as the contact comes to rest: the projection of the gap would move them. */
 static void let_stick(struct Resolution *resolution, size_t contact) {
-  const struct SwitchTable *switches = resolution->switches;
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    size_t velocity = friction_slot(switches, i, FRICTION_VELOCITY);
-    bool slides = sliding_speed(resolution, i) > resolution->error_bound[velocity];
-    if (rests_on(switches, i, contact) && !slides) set_friction(resolution, i, 0.0);
-  }
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) stick_if_stopped(resolution, contact, i);
 }
 
 /* Lets frictions along lines stick that the projection of the velocities has stopped. False if values do not exist. */
@@ -271,8 +273,9 @@ static bool let_stopped_stick(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   if (switches->friction_count == 0) return true;
   if (!evaluate_velocities(resolution)) return false;
-  for (size_t i = 0; i < switches->contact_count; i++)
-    if (contact_is_closed(resolution, i)) let_stick(resolution, i);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    for (size_t j = 0; j < switches->contact_count && plane_of(switches, i) == switches->plane_count; j++)
+      if (contact_is_closed(resolution, j)) stick_if_stopped(resolution, j, i);
   return true;
 }
 
@@ -344,8 +347,7 @@ static const char *let_rest(struct Resolution *resolution) {
     contact_forces_report_fixed(resolution, fixed);
     return no_impact;
   }
-  bool is_done = resolution->switches->plane_count > 0 ? let_stopped_slip(resolution) : let_stopped_stick(resolution);
-  return is_done ? NULL : report_rest(resolution);
+  return let_stopped_slip(resolution) && let_stopped_stick(resolution) ? NULL : report_rest(resolution);
 }
 
 /* Opens closed contacts that were moved apart. True if any. */
