@@ -1,15 +1,23 @@
 """Two boxes touch where they overlap, in the direction of the least overlap: separating axes, balances of momentum, and areas of support by geometry."""
 
+import subprocess
+
 import numpy as np
 import pytest
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 from scipy.spatial.transform import Rotation
 
 import fmu
-from building import build_systems
+from building import LAGC, build_systems
 
 G, MASS, STIFFNESS = 9.81, 2.0, 2e4
 LOWER, UPPER = np.array([0.2, 0.15, 0.1]), np.array([0.12, 0.05, 0.08])  # half sizes
+
+
+BEAMS = """<system name="BeamOnBeam"><parameter name="yaw" start="0" unit="rad"/><coordinate name="z" velocity="v" unit="m" start="0.00999"/>
+  <frame name="a"><translate z="z"/><rotate axis="z" angle="yaw"/></frame><body name="beam" in="a" mass="1"/>
+  <shape name="upper" in="a" type="box" sizeX="4" sizeY="0.01" sizeZ="0.01"/><shape name="lower" type="box" sizeX="4" sizeY="0.01" sizeZ="0.01"/>
+  <contact name="touch" between="upper" and="lower" stiffness="1e5"/><solver tolerance="1e-8"/></system>"""
 
 
 def body(name, half):
@@ -54,6 +62,7 @@ def built():
         "BoxOnWideTable": system("BoxOnWideTable", upper + table(np.array([9.0, 9.0, 0.1]))),
         "BoxOnPlane": system("BoxOnPlane", upper + '<shape name="table" type="plane"/>'),
         "BoxesGrip": gripper(),
+        "BeamOnBeam": BEAMS,
         "BoxesInSpace": system("BoxesInSpace", upper + body("b", LOWER), gravity=0, damping=0.5, second="bS"),
     }
     build_systems("boxes-on-boxes", texts)
@@ -208,3 +217,28 @@ def test_fingers_lift_a_cube(mu, lifts):
         instance.free()
     assert cube == pytest.approx(hand - 0.01 if lifts else 0.02, abs=1e-3)
     assert not lifts or forces == pytest.approx([10, 10], rel=1e-3)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1e-4, 1e-3, 0.004, 0.006, 0.0095, 0.02, 1.0])
+def test_beams_that_are_almost_parallel(yaw):
+    """The faces of long beams share a parallelogram, hexagon or octagon. Its corners are points, whatever the angle between the beams."""
+    half = np.array([2, 0.005])
+    axes = np.array([[np.cos(yaw), np.sin(yaw)], [-np.sin(yaw), np.cos(yaw)]])
+    rows = [[*(sign * axis), -size] for frame in (np.eye(2), axes) for axis, size in zip(frame, half) for sign in (1, -1)]
+    corners = len(ConvexHull(HalfspaceIntersection(np.array(rows), np.zeros(2)).intersections).vertices) if yaw > 0 else 4
+    instance = fmu.Instance("BeamOnBeam", logging=False)
+    try:
+        force = instance.initialize({"yaw": yaw}).get("touch.force")
+    finally:
+        instance.free()
+    assert force == pytest.approx(corners * 1e5 * 1e-5, rel=1e-6)
+
+
+def test_a_pile_of_boxes_is_within_the_limits(tmp_path):
+    """Six pairs of boxes that may touch: two on a table, and one on both."""
+    shapes = "".join(body(name, UPPER) for name in "abc") + table(LOWER)
+    pairs = [("aS", "table"), ("bS", "table"), ("cS", "table"), ("aS", "bS"), ("aS", "cS"), ("bS", "cS")]
+    contacts = "".join(f'<contact name="c{i}" between="{one}" and="{other}" stiffness="2e4" friction="0.5"/>' for i, (one, other) in enumerate(pairs))
+    path = tmp_path / "system.xml"
+    path.write_text(f'<system name="PileOfBoxes"><gravity z="-{G}"/>{shapes}{contacts}</system>')
+    assert subprocess.run([LAGC, path, "-o", tmp_path], capture_output=True).returncode == 0

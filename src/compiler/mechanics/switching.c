@@ -296,9 +296,13 @@ static struct SwitchTable count_switches(const struct Model *model, const struct
 
 static void fill_branches(const struct Model *model, const struct SwitchingExpressions *switching,
                           const struct SwitchTable *counts, const Node *seeds, Node *values) {
-  for (size_t i = 0; i < counts->branch_count; i++) values[i] = switching->branches[i]->indicator;
-  for (size_t i = 0; i < counts->branch_count; i++)
-    values[branch_rate_slot(counts, i)] = rate_of(model, values[i], seeds);
+  size_t count = counts->branch_count;
+  Node *known = allocate(count, sizeof *known), *rates = &values[branch_rate_slot(counts, 0)];
+  for (size_t i = 0; i < count; i++) {
+    values[i] = switching->branches[i]->indicator;
+    known[i] = graph_depends_on(model->graph, values[i], ACCELERATION) ? ZERO : values[i];
+  }
+  if (count > 0) derivative_along(model->graph, known, count, seeds, rates); /* all at once: indicators share much */
 }
 
 /* Appends all values, in the order of struct SwitchTable. */
@@ -397,21 +401,27 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   return switching->indicator_count > 0 ? switching : NULL;
 }
 
+/* Returns the sign of a branch without modes. Its indicator contains modes of earlier branches only. */
+static Node sign_of_branch(const struct Model *model, const struct Branch *branch) {
+  if (*branch->sign == ZERO)
+    *branch->sign = function(model->graph, SIGN, without_branches(model, branch->indicator), ZERO);
+  return *branch->sign;
+}
+
 Node without_branches(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
-  if (switches->branch_count == 0) return node;
+  if (switches->branch_count == 0 || !graph_depends_on(graph, node, MODE)) return node;
+  bool *is_used = allocate(switches->branch_count, sizeof *is_used);
+  cone_collect(graph->cone, graph, &node, 1);
+  for (size_t i = 0; i < switches->branch_count; i++) is_used[i] = cone_has(graph->cone, switches->branches[i].mode);
   Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->branch_count; i++)
-    if (!switches->branches[i].is_of_friction)
-      replacements[graph->vertices[switches->branches[i].mode].left] =
-          function(graph, SIGN, switches->branches[i].indicator, ZERO);
-  /* The indicator of a branch may contain earlier branches. */
-  for (size_t depth = 0; depth <= switches->branch_count && graph_depends_on(graph, node, MODE); depth++) {
-    Node before = node;
-    substitute(graph, &node, 1, replacements, &node);
-    if (node == before) break;
-  }
+    if (is_used[i] && !switches->branches[i].is_of_friction)
+      replacements[graph->vertices[switches->branches[i].mode].left] = sign_of_branch(model, &switches->branches[i]);
+  substitute(graph, &node, 1, replacements, &node);
+  release(replacements);
+  release(is_used);
   return node;
 }
 

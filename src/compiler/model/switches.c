@@ -4,6 +4,7 @@
 #include "base/memory.h"
 
 void append_branch(struct Switches *switches, struct Branch branch) {
+  branch.sign = allocate(1, sizeof *branch.sign);
   APPEND(switches->branches, switches->branch_count, branch);
 }
 

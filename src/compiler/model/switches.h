@@ -10,6 +10,7 @@
 /* A piecewise expression's branch. The mode is the sign of the indicator, -1, 0 or 1. */
 struct Branch {
   Node mode, indicator;
+  Node *sign;           /* of the indicator, without the modes of other branches, once it is needed; before, ZERO */
   bool is_last_sign;    /* of an event's expression: while the indicator rests at 0, the mode keeps its sign */
   bool is_of_friction;  /* the mode of a friction with a prescribed velocity; results keep the mode itself */
   unsigned kinds;       /* of the symbols on which the mode depends, also through other modes */

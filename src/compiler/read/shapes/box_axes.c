@@ -6,7 +6,10 @@
 /* Signs of numbers that rest at 0 are those of the number plus this share of its size. They decide nothing there. */
 static const double sign_bias = 1e-7;
 
-/* Edges count as parallel below this sine. Boxes are close to each other up to this share of the smallest half size. */
+/*
+ * Edges count as parallel below this sine times the ratio of the smallest and the largest half size. Their crossings
+ * then move by less than 1 % of a width. Boxes are close up to the second share of the smallest half size.
+ */
 static const double least_sine = 0.01, closeness = 0.05;
 
 /* Overlaps along edges count as larger by this share, so that faces and edges that lie flat do not take turns. */
@@ -43,6 +46,7 @@ static Node is_larger(const struct Boxes *boxes, Node matters, Node one, Node ot
   return is_positive_where(boxes, matters, add(graph, excess, scale(graph, sign_bias, boxes->least)));
 }
 
+/* Returns the larger one of two lengths; the first one where the second one does not matter. */
 static Node larger_of(const struct Boxes *boxes, Node matters, Node one, Node other) {
   return choose_node(boxes->graph, is_larger(boxes, matters, one, other), one, other);
 }
@@ -58,12 +62,14 @@ static struct Box box_of(const struct ShapePair *pair, const struct ContactSide 
   return box;
 }
 
-/* Returns the smallest half size of both boxes. */
-static Node least_of(const struct Boxes *boxes) {
-  Node least = boxes->box[0].half[0];
-  for (int i = 1; i < 6; i++)
-    least = piecewise_function(boxes->pair->scope, MINIMUM, least, boxes->box[i / 3].half[i % 3], boxes->pair->line);
-  return least;
+/* Returns the smallest half size of both boxes, or the largest one. */
+static Node extreme_of(const struct Boxes *boxes, enum Operation operation) {
+  Node extreme = boxes->box[0].half[0];
+  for (int i = 1; i < 6; i++) {
+    Node half = boxes->box[i / 3].half[i % 3];
+    extreme = piecewise_function(boxes->pair->scope, operation, extreme, half, boxes->pair->line);
+  }
+  return extreme;
 }
 
 static struct BoxFace face_towards(const struct Boxes *boxes, Node matters, int own) {
@@ -107,7 +113,8 @@ static struct BoxCrossing crossing_of(const struct Boxes *boxes, int i, int j) {
   struct BoxCrossing crossing = {.axis = {i, j}, .cosine = boxes->cosine[i][j]};
   crossing.squared_sine = add(graph, power_number(graph, boxes->cosine[(i + 1) % 3][j], 2.0),
                               power_number(graph, boxes->cosine[(i + 2) % 3][j], 2.0));
-  Node excess = subtract(graph, crossing.squared_sine, graph_constant(graph, least_sine * least_sine));
+  Node least = divide(graph, scale(graph, least_sine, boxes->least), extreme_of(boxes, MAXIMUM));
+  Node excess = subtract(graph, crossing.squared_sine, power_number(graph, least, 2.0));
   crossing.is_skew = choose_node(graph, boxes->is_close, is_positive_where(boxes, boxes->is_close, excess), ZERO);
   crossing.inverse = power_number(graph, choose_node(graph, crossing.is_skew, crossing.squared_sine, ONE), -0.5);
   crossing.outward = sign_where(boxes, crossing.is_skew, height, boxes->least);
@@ -149,8 +156,7 @@ static void find_distance(struct Boxes *boxes, struct Vector apart) {
     struct BoxCrossing *crossing = &boxes->crossing[i / 3][i % 3];
     *crossing = crossing_of(boxes, i / 3, i % 3);
     Node counted = scale(graph, 1.0 + edge_share, crossing->distance);
-    Node larger = larger_of(boxes, crossing->is_skew, counted, boxes->distance);
-    boxes->distance = choose_node(graph, crossing->is_skew, larger, boxes->distance);
+    boxes->distance = larger_of(boxes, crossing->is_skew, boxes->distance, counted);
   }
 }
 
@@ -159,7 +165,7 @@ struct Boxes boxes_of(const struct ShapePair *pair) {
   struct Boxes boxes = {.pair = pair, .graph = graph, .box = {box_of(pair, pair->first), box_of(pair, pair->second)}};
   struct Box *first = &boxes.box[0], *second = &boxes.box[1];
   struct Vector apart = vector_subtract(graph, second->centre, first->centre);
-  boxes.least = least_of(&boxes);
+  boxes.least = extreme_of(&boxes, MINIMUM);
   for (int i = 0; i < 3; i++) {
     first->other[i] = vector_dot(graph, apart, first->axis[i]);
     second->other[i] = negate(graph, vector_dot(graph, apart, second->axis[i]));

@@ -90,6 +90,16 @@ static bool check_boxes(struct Reader *reader, xmlNodePtr node, const struct Con
   return true;
 }
 
+/* Expects sizes above 0 of two boxes, whose sizes may be parameters. */
+static void expect_solid_boxes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
+  if (shapes[0]->type != SHAPE_BOX || shapes[1]->type != SHAPE_BOX) return;
+  for (int i = 0; i < 6; i++) {
+    const struct ContactShape *box = shapes[i / 3];
+    const char *what = format_text("the size of the box '%s' along %c", box->name, "xyz"[i % 3]);
+    expect_size(reader, node, what, box->size.along[i % 3], true);
+  }
+}
+
 /* Finds both shapes. Returns false after reporting that one is missing or that they cannot touch. */
 static bool find_shapes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
   shapes[0] = shape_of_attribute(reader, node, "between");
@@ -220,6 +230,7 @@ static bool read_contact_of_shapes(struct Reader *reader, xmlNodePtr node, struc
   contact->contacts = contact_points_of(reader, line, &contact->first, &contact->second, !is_compliant(node));
   if (contact->contacts.carrier != NULL) contact->sliding = sliding_field_of(reader->model->graph, contact);
   expect_centres_outside(reader, node, contact);
+  expect_solid_boxes(reader, node, shapes);
   return check_motion(reader, node, contact);
 }
 
