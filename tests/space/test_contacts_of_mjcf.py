@@ -32,7 +32,11 @@ SET = '><parameter name="ground_friction" start="0.25"/></include>'
 SYSTEMS = {"Slope": SYSTEM.format("Slope", "/>"), "Rough": SYSTEM.format("Rough", "/>"), "Same": SYSTEM.format("Same", SET)}
 SYSTEMS["Touch"] = '<system name="Touch"><include file="touch.xml" as="r" self="true"/></system>'
 
-
+SYSTEMS["Pile"] = """<system name="Pile"><include file="pile.xml" as="r" ground="true"/>
+  <contact name="pile" between="r.high_collision1" and="r.low_collision1" stiffness="1e4" damping="1" friction="0.5"/></system>"""
+PILE = """<mujoco model="pile"><worldbody><geom type="plane" size="1 1 1"/>
+<body name="low" pos="0 0 0.1"><freejoint/><geom type="box" size="0.2 0.2 0.1" mass="2"/></body>
+<body name="high" pos="0 0 0.31"><freejoint/><geom type="box" size="0.1 0.1 0.1" mass="1"/></body></worldbody></mujoco>"""
 # Two spheres on each other on a table, a capsule across another one, and two spheres that touch nothing. One slides with a part on it.
 TOUCH = """<mujoco model="touch"><default><joint type="slide" axis="0 0 1"/></default><worldbody>
 <geom type="box" size="1 1 0.5" pos="0 0 -0.5"/><geom type="capsule" fromto="3 -1 0 3 1 0" size="0.1"/>
@@ -48,7 +52,7 @@ TOUCH = """<mujoco model="touch"><default><joint type="slide" axis="0 0 1"/></de
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    files = {"Slope/slope.xml": SLOPE, "Rough/slope.xml": ROUGH, "Same/slope.xml": SLOPE, "Touch/touch.xml": TOUCH}
+    files = {"Slope/slope.xml": SLOPE, "Rough/slope.xml": ROUGH, "Same/slope.xml": SLOPE, "Touch/touch.xml": TOUCH, "Pile/pile.xml": PILE}
     build_systems("contacts_of_mjcf", SYSTEMS, files=files)
 
 
@@ -96,6 +100,14 @@ def test_shapes_of_one_file_touch_each_other(open_fmu):
         assert instance.get(f"r.{name}.force") == pytest.approx(mass * G, rel=1e-6), name
     assert instance.get("r.along") == pytest.approx(1 / (2 * 0.3 * G), abs=2e-3)
     assert instance.get("r.excluded", "r.masked") == pytest.approx([-G * 4.5, -G * 4.5], rel=1e-8)
+
+
+def test_boxes_touch_by_a_contact_of_the_system(open_fmu):
+    """The upper box falls by 1 cm, and comes to rest with its weight on four corners, mg/(4 k) deep."""
+    instance = open_fmu("Pile").initialize(tolerance=1e-8)
+    instance.run(2.0, 0.5)
+    assert instance.get("pile.force") == pytest.approx(G, rel=1e-3)
+    assert instance.get("r.high_z") - instance.get("r.low_z") == pytest.approx(0.2 - G / 4e4, abs=1e-6)
 
 
 def test_shapes_of_a_urdf_touch_each_other(tmp_path):

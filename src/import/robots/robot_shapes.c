@@ -169,7 +169,7 @@ void find_pairs(struct Robot *robot, const struct RobotOptions *options, const s
   for (int i = 0; i < 2; i++) types[i] = other.links[i]->collisions[other.indices[i]].type;
   report_warning(diagnostics, other.line,
                  "%zu pair%s of shapes do not touch, such as the %s of the link '%s' and the %s of '%s'; expected a "
-                 "sphere and another shape, or two capsules",
+                 "sphere and another shape, two capsules, or a <contact> with stiffness between two boxes",
                  others, others > 1 ? "s" : "", types[0], other.links[0]->name, types[1], other.links[1]->name);
 }
 

@@ -171,8 +171,9 @@ static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, con
   report_warning(mjcf->file.diagnostics, line_of(first->node),
                  "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected %s", name_of(first->node),
                  name_of(first->body), name_of(second->node), name_of(second->body), others,
-                 mjcf->file.options->has_self ? "a sphere and another shape, or two capsules"
-                                              : "self=\"true\" in an <include>, or --self on the command line");
+                 mjcf->file.options->has_self
+                     ? "a sphere and another shape, two capsules, or a <contact> with stiffness between two boxes"
+                     : "self=\"true\" in an <include>, or --self on the command line");
 }
 
 /* Adds the contact of two geoms if the options request it. Returns false if there is none, or none is possible. */
