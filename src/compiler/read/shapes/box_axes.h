@@ -8,9 +8,6 @@
 
 #include "read/shapes/shape_pair.h"
 
-/* The share of its size by which the first box is smaller where features coincide. */
-static const double shrinkage = 1e-5;
-
 /* A box, in vectors along the base's axes. */
 struct Box {
   struct Vector centre, axis[3];

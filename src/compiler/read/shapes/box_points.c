@@ -10,6 +10,9 @@
 #include "algebra/simplify.h"
 #include "read/shapes/box_axes.h"
 
+/* The share of its size by which the first box is smaller where features coincide. */
+static const double shrinkage = 1e-5;
+
 /* Points with an overlap larger than that of the boxes by this share touch less. */
 static const double deep_share = 0.15;
 
