@@ -80,11 +80,16 @@ static void find_branches(const struct Model *model, struct NodeList *roots, str
   }
 }
 
-/* Returns the time derivative of a node; ZERO for forces, whose rate is unknown. */
+/* Finds the time derivatives of nodes, which share what they have in common; ZERO for forces, whose rate is unknown. */
+static void find_rates(const struct Model *model, const Node *nodes, size_t count, const Node *seeds, Node *rates) {
+  for (size_t i = 0; i < count; i++)
+    rates[i] = graph_depends_on(model->graph, nodes[i], ACCELERATION) ? ZERO : nodes[i];
+  derivative_along(model->graph, rates, count, seeds, rates);
+}
+
 static Node rate_of(const struct Model *model, Node node, const Node *seeds) {
-  if (graph_depends_on(model->graph, node, ACCELERATION)) return ZERO;
   Node rate;
-  derivative_along(model->graph, &node, 1, seeds, &rate);
+  find_rates(model, &node, 1, seeds, &rate);
   return rate;
 }
 
@@ -296,13 +301,8 @@ static struct SwitchTable count_switches(const struct Model *model, const struct
 
 static void fill_branches(const struct Model *model, const struct SwitchingExpressions *switching,
                           const struct SwitchTable *counts, const Node *seeds, Node *values) {
-  size_t count = counts->branch_count;
-  Node *known = allocate(count, sizeof *known), *rates = &values[branch_rate_slot(counts, 0)];
-  for (size_t i = 0; i < count; i++) {
-    values[i] = switching->branches[i]->indicator;
-    known[i] = graph_depends_on(model->graph, values[i], ACCELERATION) ? ZERO : values[i];
-  }
-  if (count > 0) derivative_along(model->graph, known, count, seeds, rates); /* all at once: indicators share much */
+  for (size_t i = 0; i < counts->branch_count; i++) values[i] = switching->branches[i]->indicator;
+  find_rates(model, values, counts->branch_count, seeds, &values[branch_rate_slot(counts, 0)]);
 }
 
 /* Appends all values, in the order of struct SwitchTable. */

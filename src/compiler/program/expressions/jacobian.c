@@ -19,7 +19,10 @@
 #include "algebra/simplify.h"
 #include "base/memory.h"
 
-/* Most nodes below the equations, counted once for each. Formulas have some 30 bytes of C a node; short ones are kept. */
+/*
+ * Most nodes below the equations, counted once for each: for formulas, and for those that are not compared with
+ * directions. The C of formulas has some 30 bytes a node.
+ */
 enum { GRADIENT_LIMIT = 100000, DIRECTIONS_LIMIT = 20000 };
 
 /* The kinds of symbols of the state, as bits. */
@@ -181,8 +184,8 @@ static struct JacobianExpressions *pattern_for_directions(struct Graph *graph, c
 
 /*
  * True if gradients of all equations would be too long, or long and longer than a directional derivative along each
- * state. A gradient takes up to four times the operations of its equation, a directional derivative about as many as all
- * equations.
+ * state. A gradient takes up to four times the operations of its equation, a directional derivative about as many as
+ * all equations.
  */
 static bool are_long(struct Graph *graph, const struct Equations *equations) {
   size_t sum = 0, columns = 2 * equations->count + equations->rates.count;

@@ -54,9 +54,7 @@ static Node larger_of(const struct Boxes *boxes, Node matters, Node one, Node ot
 static struct Box box_of(const struct ShapePair *pair, const struct ContactSide *side) {
   struct Box box = {.centre = middle_of(pair, side)};
   for (int i = 0; i < 3; i++) {
-    struct Vector axis = {{ZERO, ZERO, ZERO}};
-    axis.along[i] = ONE;
-    box.axis[i] = rotated_by(pair, side, axis);
+    box.axis[i] = own_axis_of(pair, side, i);
     box.half[i] = scale(pair->graph, 0.5, side->shape->size.along[i]);
   }
   return box;
@@ -113,8 +111,7 @@ static struct BoxCrossing crossing_of(const struct Boxes *boxes, int i, int j) {
   struct BoxCrossing crossing = {.axis = {i, j}, .cosine = boxes->cosine[i][j]};
   crossing.squared_sine = add(graph, power_number(graph, boxes->cosine[(i + 1) % 3][j], 2.0),
                               power_number(graph, boxes->cosine[(i + 2) % 3][j], 2.0));
-  Node least = divide(graph, scale(graph, least_sine, boxes->least), extreme_of(boxes, MAXIMUM));
-  Node excess = subtract(graph, crossing.squared_sine, power_number(graph, least, 2.0));
+  Node excess = subtract(graph, crossing.squared_sine, boxes->parallel);
   crossing.is_skew = choose_node(graph, boxes->is_close, is_positive_where(boxes, boxes->is_close, excess), ZERO);
   crossing.inverse = power_number(graph, choose_node(graph, crossing.is_skew, crossing.squared_sine, ONE), -0.5);
   crossing.outward = sign_where(boxes, crossing.is_skew, height, boxes->least);
@@ -166,6 +163,8 @@ struct Boxes boxes_of(const struct ShapePair *pair) {
   struct Box *first = &boxes.box[0], *second = &boxes.box[1];
   struct Vector apart = vector_subtract(graph, second->centre, first->centre);
   boxes.least = extreme_of(&boxes, MINIMUM);
+  Node sine = divide(graph, scale(graph, least_sine, boxes.least), extreme_of(&boxes, MAXIMUM));
+  boxes.parallel = power_number(graph, sine, 2.0);
   for (int i = 0; i < 3; i++) {
     first->other[i] = vector_dot(graph, apart, first->axis[i]);
     second->other[i] = negate(graph, vector_dot(graph, apart, second->axis[i]));

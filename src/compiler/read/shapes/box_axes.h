@@ -43,6 +43,7 @@ struct Boxes {
   struct Box box[2];
   Node cosine[3][3], size[3][3]; /* products of an axis of the first and an axis of the second box; without sign */
   Node least;                    /* m, the smallest half size */
+  Node parallel;                 /* the squared sine below which edges count as parallel */
   Node is_close;                 /* positive where no face separates the boxes by more than a small distance */
   struct BoxFace face[2];
   struct BoxCrossing crossing[3][3];

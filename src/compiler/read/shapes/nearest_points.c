@@ -160,14 +160,13 @@ static size_t list_edges(const struct ContactShape *box, struct BoxEdge edges[BO
 /* Returns an edge of the second shape, a box, along the base's axes. */
 static struct Segment segment_of_edge(const struct ShapePair *pair, const struct BoxEdge *edge) {
   struct Graph *graph = pair->graph;
-  struct Vector size = pair->second->shape->size, middle = {{ZERO, ZERO, ZERO}}, direction = middle;
+  struct Vector size = pair->second->shape->size, middle = {{ZERO, ZERO, ZERO}};
   for (int side = 0; side < 2; side++) {
     int across = (edge->axis + 1 + side) % 3;
     middle.along[across] = scale(graph, edge->upper[side] ? 0.5 : -0.5, size.along[across]);
   }
-  direction.along[edge->axis] = ONE;
   middle = vector_add(graph, middle_of(pair, pair->second), rotated_by(pair, pair->second, middle));
-  return (struct Segment){middle, rotated_by(pair, pair->second, direction), size.along[edge->axis]};
+  return (struct Segment){middle, own_axis_of(pair, pair->second, edge->axis), size.along[edge->axis]};
 }
 
 /*

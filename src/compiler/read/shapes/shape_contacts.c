@@ -68,9 +68,13 @@ static const char *only_on_planes(const struct ContactShape *shape) {
   return shape->type == SHAPE_MESH ? "a mesh" : shape->type == SHAPE_ELLIPSOID ? "an ellipsoid" : NULL;
 }
 
+static bool are_boxes(const struct ContactShape *shapes[2]) {
+  return shapes[0]->type == SHAPE_BOX && shapes[1]->type == SHAPE_BOX;
+}
+
 /* Returns false after reporting two boxes whose contact is rigid, or one of which is flat. */
 static bool check_boxes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
-  if (shapes[0]->type != SHAPE_BOX || shapes[1]->type != SHAPE_BOX) return true;
+  if (!are_boxes(shapes)) return true;
   if (!is_compliant(node)) {
     report_at(reader, node,
               "the <contact> of the boxes '%s' and '%s' is rigid; expected stiffness=\"...\" in N/m, or a plane in "
@@ -92,7 +96,7 @@ static bool check_boxes(struct Reader *reader, xmlNodePtr node, const struct Con
 
 /* Expects sizes above 0 of two boxes, whose sizes may be parameters. */
 static void expect_solid_boxes(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shapes[2]) {
-  if (shapes[0]->type != SHAPE_BOX || shapes[1]->type != SHAPE_BOX) return;
+  if (!are_boxes(shapes)) return;
   for (int i = 0; i < 6; i++) {
     const struct ContactShape *box = shapes[i / 3];
     const char *what = format_text("the size of the box '%s' along %c", box->name, "xyz"[i % 3]);

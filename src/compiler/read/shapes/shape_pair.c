@@ -18,8 +18,14 @@ struct Vector seen_by(const struct ShapePair *pair, const struct ContactSide *si
   return matrix_apply_transposed(pair->graph, &side->shape->rotation, vector);
 }
 
+struct Vector own_axis_of(const struct ShapePair *pair, const struct ContactSide *side, int i) {
+  struct Vector axis = {{ZERO, ZERO, ZERO}};
+  axis.along[i] = ONE;
+  return rotated_by(pair, side, axis);
+}
+
 struct Vector axis_of(const struct ShapePair *pair, const struct ContactSide *side) {
-  return rotated_by(pair, side, along_axis(side->shape, ONE));
+  return own_axis_of(pair, side, side->shape->axis);
 }
 
 struct Vector middle_of(const struct ShapePair *pair, const struct ContactSide *side) {

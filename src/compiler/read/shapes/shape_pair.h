@@ -44,6 +44,9 @@ struct Vector rotated_by(const struct ShapePair *pair, const struct ContactSide 
 /* Rotates a vector along the base's axes to those of the shape. */
 struct Vector seen_by(const struct ShapePair *pair, const struct ContactSide *side, struct Vector vector);
 
+/* Returns axis i of the shape's own frame, such as of a box, along the base's axes. */
+struct Vector own_axis_of(const struct ShapePair *pair, const struct ContactSide *side, int i);
+
 /* Return the axis and the centre of a shape, along the base's axes. */
 struct Vector axis_of(const struct ShapePair *pair, const struct ContactSide *side);
 struct Vector middle_of(const struct ShapePair *pair, const struct ContactSide *side);

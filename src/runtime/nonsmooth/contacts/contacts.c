@@ -271,11 +271,13 @@ static void let_stick(struct Resolution *resolution, size_t contact) {
 /* Lets frictions along lines stick that the projection of the velocities has stopped. False if values do not exist. */
 static bool let_stopped_stick(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  if (switches->friction_count == 0) return true;
+  if (switches->friction_count == 2 * switches->plane_count) return true; /* each plane has two, and no line has one */
   if (!evaluate_velocities(resolution)) return false;
-  for (size_t i = 0; i < switches->friction_count; i++)
-    for (size_t j = 0; j < switches->contact_count && plane_of(switches, i) == switches->plane_count; j++)
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    if (plane_of(switches, i) < switches->plane_count) continue;
+    for (size_t j = 0; j < switches->contact_count; j++)
       if (contact_is_closed(resolution, j)) stick_if_stopped(resolution, j, i);
+  }
   return true;
 }
 
