@@ -12,6 +12,7 @@ import argparse
 import csv
 import difflib
 import hashlib
+import json
 import os
 import random
 import re
@@ -22,9 +23,10 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 from mutations import changed_since, line_of, mutants_of, mutated
-from planting import ROOT, TREE, build, compile_commands, configure, copy_project, kind_of, plant, text_of
+from planting import ROOT, TREE, build, compile_commands, configure, copy_project, function_of, kind_of, plant, text_of
 
 TABLE = ROOT / "build" / "faults.csv"
+KEPT = ROOT / "build" / "faults-baseline.json"
 SOURCES = ["src/compiler", "src/import", "src/runtime", "src/ensemble", "modelDescription"]
 # Without platforms, whose tests need browsers, other compilers and emulators.
 ROOMS = ["compiler", "language", "mechanics", "space", "switching", "solvers", "fmi", "scripts"]
@@ -88,15 +90,22 @@ def pytest(module, environment, seconds, *words):
 
 
 class Baseline:
-    """The tests without a mutant: each module's time, the tests of it that fail, and the mutants whose functions it calls."""
+    """
+    The tests without a mutant: each module's time, the tests of it that fail, and the functions that it calls. They are kept for other
+    samples of mutants, until a file of the project changes.
+    """
 
-    def __init__(self):
+    def __init__(self, digest):
         self.reached = TREE / "build" / "reached"
         shutil.rmtree(self.reached, ignore_errors=True)
+        kept = json.loads(KEPT.read_text()) if KEPT.exists() else {}
+        self.digest, self.rows = digest, kept["modules"] if kept.get("digest") == digest else {}
         self.modules = [str(path.relative_to(TREE)) for room in ROOMS for path in sorted((TREE / "tests" / room).glob("test_*.py"))]
         with ThreadPoolExecutor(CORES) as pool:
-            rows = list(pool.map(self.measure, self.modules))
-        self.seconds, self.failing, self.calls = (dict(zip(self.modules, column)) for column in zip(*rows))
+            list(pool.map(self.measure, [module for module in self.modules if module not in self.rows]))
+        self.seconds, self.failing, self.calls = (
+            {module: self.rows[module][column] for module in self.modules} for column in ("seconds", "failing", "calls")
+        )
 
     def measure(self, module):
         started = time.monotonic()
@@ -104,11 +113,13 @@ class Baseline:
         folder.mkdir(parents=True)
         output, _ = pytest(module, {"PLANTED_REACHED": str(folder)}, 900)
         failing = re.findall(r"^(?:FAILED|ERROR) (.*?)(?: - .*)?$", output, re.MULTILINE)
-        return time.monotonic() - started, failing, {int(path.name) for path in folder.iterdir()}
+        calls = sorted(path.name for path in folder.iterdir())
+        self.rows[module] = {"seconds": round(time.monotonic() - started, 1), "failing": failing, "calls": calls}
+        KEPT.write_text(json.dumps({"digest": self.digest, "modules": dict(self.rows)}))
 
-    def modules_of(self, number, successes):
-        """Modules that call the mutant's function: first those that detected mutants of its file, then the fastest."""
-        called = [module for module in self.modules if number in self.calls[module]]
+    def modules_of(self, function, successes):
+        """Modules that call a function: first those that detected mutants of its file, then the fastest."""
+        called = [module for module in self.modules if function in self.calls[module]]
         return sorted(called, key=lambda module: (-successes.get(module, 0), self.seconds[module]))
 
     def failure(self, module, number):
@@ -160,12 +171,12 @@ class Systems:
         return not any(codes)
 
 
-def detected_in_modules(number, baseline, systems, old, successes, limit):
+def detected_in_modules(number, function, baseline, systems, old, successes, limit):
     """
     Return the test that detects a mutant, "time limit" if not all could run within the seconds, or "none". `old` lists systems whose FMUs
     the mutant would change. They are built when a test of one fails, which may have compared its FMU with the output of lagc.
     """
-    started, modules = time.monotonic(), baseline.modules_of(number, successes)
+    started, modules = time.monotonic(), baseline.modules_of(function, successes)
     with ThreadPoolExecutor(CORES) as pool:
         for first in range(0, len(modules), CORES):
             if time.monotonic() - started > limit:
@@ -182,7 +193,7 @@ def detected_in_modules(number, baseline, systems, old, successes, limit):
     return "none"
 
 
-def detected_by(number, file, baseline, systems, successes, limit):
+def detected_by(number, file, function, baseline, systems, successes, limit):
     """Return what detects a mutant, "time limit" or "none"."""
     if not ctest({"PLANTED_FAULT": str(number)}, 120):
         return "ctest"
@@ -198,7 +209,7 @@ def detected_by(number, file, baseline, systems, successes, limit):
     try:
         if differ and not systems.rebuild(differ[:REBUILT], str(number)):
             return "build"
-        return detected_in_modules(number, baseline, systems, old, successes, limit)
+        return detected_in_modules(number, function, baseline, systems, old, successes, limit)
     finally:
         if differ:
             systems.rebuild([name for name in differ if name not in old], "0")
@@ -221,17 +232,17 @@ def options_of(words):
 
 def main(words):
     options = options_of(words)
-    copy_project()
+    digest = copy_project()
     configure()
     chosen, equivalent = choose(options)
     if not chosen:
         sys.exit("there are no mutants to test")
     print(f"{len(chosen)} mutants; left out: {equivalent} with the same object code", flush=True)
-    plant(chosen)
+    plant(sources(SOURCES), chosen)
     build()
     if not ctest({}, 600):
         sys.exit("the tests in C fail without a mutant")
-    baseline, systems, successes, survivors = Baseline(), Systems(), {}, 0
+    baseline, systems, successes, survivors = Baseline(digest), Systems(), {}, 0
     failing = sum(map(len, baseline.failing.values()))
     print(f"without a mutant: {sum(baseline.seconds.values()):.0f} s of {len(baseline.modules)} modules; {failing} tests fail", flush=True)
     with open(TABLE, "w", newline="") as table:
@@ -239,7 +250,7 @@ def main(words):
         writer.writerow(["file", "line", "kind", "right", "wrong", "detected by", "seconds"])
         for number, (file, mutant) in enumerate(chosen, 1):
             started = time.monotonic()
-            by = detected_by(number, file, baseline, systems, successes.setdefault(file, {}), options.limit)
+            by = detected_by(number, file, function_of(file, mutant), baseline, systems, successes.setdefault(file, {}), options.limit)
             seconds = round(time.monotonic() - started)
             line, right = line_of(text_of(file), mutant), text_of(file)[mutant.start : mutant.end].decode()
             writer.writerow([file, line, mutant.kind, right, mutant.wrong.decode(), by, seconds])

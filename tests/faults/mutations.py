@@ -74,13 +74,23 @@ def nodes_below(node):
         yield from nodes_below(child)
 
 
+def functions_of(source):
+    """Yield the bodies of the functions of a C source that can be parsed, as nodes, in the order of the text."""
+    for node in nodes_below(parser().parse(source).root_node):
+        if node.type == "function_definition" and not node.has_error:
+            yield node.child_by_field_name("body")
+
+
+@functools.cache
+def bodies_of(source):
+    """Offsets of the bodies of the functions of a C source, in the order of the text."""
+    return [(body.start_byte, body.end_byte) for body in functions_of(source)]
+
+
 def mutants_of(source):
     """Return the mutants of a C source, given as bytes, in the order of the text."""
     found = []
-    for function in nodes_below(parser().parse(source).root_node):
-        if function.type != "function_definition" or function.has_error:
-            continue
-        body = function.child_by_field_name("body")
+    for body in functions_of(source):
         for node in nodes_below(body):
             for kind, replaced, wrong in changes_of(node):
                 found.append(Mutant(kind, replaced.start_byte, replaced.end_byte, wrong.encode(), (body.start_byte, body.end_byte)))

@@ -6,6 +6,7 @@ compile are left out before. So are equivalent ones, which give the same object 
 """
 
 import functools
+import hashlib
 import json
 import os
 import shlex
@@ -16,41 +17,43 @@ import tempfile
 import zlib
 from pathlib import Path
 
-from mutations import body_of, mutated
+from mutations import bodies_of, body_of, mutated
 
 ROOT = Path(__file__).resolve().parents[2]
 TREE = ROOT / "build" / "faults"
-# Returns 1 for the chosen mutant, and notes each one whose function is called, as a file in the folder PLANTED_REACHED. Its name is
-# unique, since an FMU may be built of one file with all sources.
+# The first function returns 1 for the chosen mutant. The second one notes that a function is called, as a file in the folder
+# PLANTED_REACHED. Their names are unique, since an FMU may be built of one file with all sources.
 CHOICE = """\
 #include <stdio.h>
 #include <stdlib.h>
 static int {name}(int mutant) {{
   static int chosen = -1;
-  static const char *reached;
-  static unsigned char noted[{count}];
   if (chosen < 0) {{
     const char *text = getenv("PLANTED_FAULT");
-    reached = getenv("PLANTED_REACHED");
     chosen = text ? atoi(text) : 0;
   }}
-  if (reached && !noted[mutant]) {{
-    char path[4096];
-    noted[mutant] = 1;
-    snprintf(path, sizeof path, "%s/%d", reached, mutant);
-    FILE *file = fopen(path, "w");
-    if (file) fclose(file);
-  }}
   return mutant == chosen;
+}}
+static void {name}_calls(int function) {{
+  const char *folder;
+  static unsigned char noted[{count}];
+  char path[4096];
+  if (noted[function]) return;
+  noted[function] = 1;
+  folder = getenv("PLANTED_REACHED");
+  if (!folder) return;
+  snprintf(path, sizeof path, "%s/{name}.%d", folder, function);
+  FILE *file = fopen(path, "w");
+  if (file) fclose(file);
 }}
 """
 
 
 def copy_project():
-    """Copy the files of the project that differ from those in the copy, and remove others."""
+    """Copy the files of the project that differ from those in the copy, and remove others. Return a digest of all files."""
     words = ["git", "ls-files", "--cached", "--others", "--exclude-standard"]
     files = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=True).stdout.splitlines()
-    files = [file for file in files if (ROOT / file).is_file()]
+    files = sorted(file for file in files if (ROOT / file).is_file())
     for file in files:
         target = TREE / file
         if not target.exists() or target.read_bytes() != (ROOT / file).read_bytes():
@@ -65,6 +68,7 @@ def copy_project():
     for name in ("venv", "sundials"):
         if not (TREE / "build" / name).exists() and (ROOT / "build" / name).exists():
             (TREE / "build" / name).symlink_to((ROOT / "build" / name).resolve())
+    return hashlib.sha256(b"".join(file.encode() + (ROOT / file).read_bytes() for file in files)).hexdigest()
 
 
 @functools.cache
@@ -116,22 +120,31 @@ def kind_of(file, mutant, commands, originals={}):
     return "does not compile" if code is None else "equivalent" if code == originals[file] else "mutant"
 
 
-def planted_text(file, source, mutants, count):
-    """Return a source with all of its mutants, given by their numbers from 1 to count."""
-    name = f"planted_{zlib.crc32(file.encode()):x}"
-    functions = {}
+def name_in(file):
+    return f"planted_{zlib.crc32(file.encode()):x}"
+
+
+def function_of(file, mutant):
+    """Name of the file that notes a call of the mutant's function."""
+    return f"{name_in(file)}.{bodies_of(text_of(file)).index(mutant.body)}"
+
+
+def planted_text(file, source, mutants):
+    """Return a source that notes the calls of its functions, with its mutants, given by their numbers from 1."""
+    name, functions, bodies = name_in(file), {}, bodies_of(source)
     for number, mutant in mutants.items():
         functions.setdefault(mutant.body, []).append((number, mutant))
-    for (start, end), ones in sorted(functions.items(), reverse=True):
-        choices = b"".join(f"if ({name}({number})) ".encode() + body_of(source, mutant) + b"\nelse " for number, mutant in ones)
-        source = source[:start] + b"{" + choices + source[start:end] + b"}" + source[end:]
-    return CHOICE.format(name=name, count=count + 1).encode() + b"#line 1\n" + source
+    for index, (start, end) in sorted(enumerate(bodies), reverse=True):
+        choices = b"".join(
+            f"if ({name}({number})) ".encode() + body_of(source, mutant) + b"\nelse " for number, mutant in functions.get((start, end), [])
+        )
+        source = source[:start] + f"{{{name}_calls({index});".encode() + choices + source[start:end] + b"}" + source[end:]
+    return CHOICE.format(name=name, count=len(bodies) + 1).encode() + b"#line 1\n" + source
 
 
-def plant(chosen):
+def plant(files, chosen):
     """Write the sources with the chosen mutants, (file, mutant), into the copy. Their numbers count from 1."""
-    for file in {file for file, _ in chosen}:
-        mutants = {number: mutant for number, (other, mutant) in enumerate(chosen, 1) if other == file}
-        text = planted_text(file, text_of(file), mutants, len(chosen))
+    for file in files:
+        text = planted_text(file, text_of(file), {number: mutant for number, (other, mutant) in enumerate(chosen, 1) if other == file})
         if (TREE / file).read_bytes() != text:
             (TREE / file).write_bytes(text)

@@ -9,7 +9,7 @@ from fmu import ROOT
 
 sys.path.append(str(ROOT / "tests" / "faults"))
 from mutations import changed_lines, line_of, mutants_of, mutated
-from planting import planted_text
+from planting import name_in, planted_text
 
 
 def mutations_of(body):
@@ -96,7 +96,7 @@ int main(void)
 def test_the_environment_chooses_a_mutant(tmp_path):
     """The program with all mutants prints without one what the original prints, 0 + 1 + 2 + 3, and with one what its text says."""
     mutants = {number: mutant for number, mutant in enumerate(mutants_of(SUM), 1) if mutant.body[0] < SUM.index(b"main")}
-    (tmp_path / "sum.c").write_bytes(planted_text("sum.c", SUM, mutants, len(mutants)))
+    (tmp_path / "sum.c").write_bytes(planted_text("sum.c", SUM, mutants))
     subprocess.run(["gcc", "-Wall", "-Werror", "sum.c", "-o", "sum"], cwd=tmp_path, check=True)
     (tmp_path / "reached").mkdir()
 
@@ -105,7 +105,7 @@ def test_the_environment_chooses_a_mutant(tmp_path):
 
     results = {mutated(SUM, mutant): printed(PLANTED_FAULT=str(number)) for number, mutant in mutants.items()}
     assert printed(PLANTED_REACHED=str(tmp_path / "reached")) == "6"
-    assert {int(path.name) for path in (tmp_path / "reached").iterdir()} == set(mutants)
+    assert {path.name for path in (tmp_path / "reached").iterdir()} == {f"{name_in('sum.c')}.{index}" for index in (0, 1)}
     assert {wrong: results[SUM.replace(right, wrong)] for right, wrong in [
         (b"sum += i;", b"sum -= i;"), (b"i < n", b"i <= n"), (b"i = 0", b"i = 1"), (b"sum += i;", b";"), (b"0.0", b"1.0"),
     ]} == {b"sum -= i;": "-6", b"i <= n": "10", b"i = 1": "6", b";": "0", b"1.0": "7"}  # fmt: skip
