@@ -245,6 +245,7 @@ struct SwitchTable {
   const struct AssignmentMetadata *assignments;
   const struct ContactLaws *contact_laws;   /* resolution.h; NULL without contacts */
   const struct FrictionLaws *friction_laws; /* resolution.h; NULL without frictions */
+  const struct ConePath *cone_path;         /* cones.h; NULL if no friction follows from contacts or is in a plane */
   /* [friction * contact_count + contact]: true if the friction depends on the contact force; NULL if none does. */
   const bool *rests_on;
   /* Computes indicator[] as below: a sign change may change a mode. acceleration as for result(). */

@@ -70,6 +70,7 @@ RUNTIME = Layers(
     src/runtime/methods/sundials
     src/runtime/detection
     src/runtime/nonsmooth
+    src/runtime/nonsmooth/cones
     src/runtime/nonsmooth/contacts
     src/runtime/nonsmooth/planes
     src/runtime/nonsmooth/rests

@@ -4,10 +4,10 @@
  */
 #include <stdlib.h>
 
-#include "nonsmooth/contacts/impacts.h"
 #include "evaluation/services.h"
 #include "instance/scratch.h"
-#include "nonsmooth/planes/cone_impulses.h"
+#include "nonsmooth/cones/cone_impulses.h"
+#include "nonsmooth/cones/cone_interior.h"
 
 void *scratch_take(struct Instance *instance, enum ScratchUse use, size_t size) {
   (void)use;
@@ -25,11 +25,6 @@ bool solver_is_out_of_memory(const struct Instance *instance) {
   return false;
 }
 
-bool is_other_outcome(const struct ContactImpulses *impulses, const double *impulse, const double *found) {
-  (void)impulses, (void)impulse, (void)found;
-  return false;
-}
-
 /*
  * Rows are the normals of `contacts` contacts, then two tangents of each. delassus: W by rows; friction: the coefficient
  * of each contact; given: the part of the limit of each row of friction that depends on no contact. Returns 1 if
@@ -39,7 +34,8 @@ int solve_cones(size_t contacts, double *delassus, const double *friction, doubl
                 double *impulse) {
   size_t frictions = 2 * contacts, count = 3 * contacts;
   static struct Instance instance;
-  struct SwitchTable switches = {.contact_count = contacts, .friction_count = frictions, .plane_count = contacts};
+  struct SwitchTable switches = {
+      .contact_count = contacts, .friction_count = frictions, .plane_count = contacts, .cone_path = &cone_path};
   struct PlaneMetadata *planes = calloc(contacts, sizeof *planes);
   struct ContactImpulses impulses = {.contact_count = contacts,
                                      .friction_count = frictions,

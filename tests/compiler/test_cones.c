@@ -2,7 +2,7 @@
  * Forces in Coulomb friction cones: random problems, whose solutions are checked by the law itself, and closed forms of
  * frictions that share a load.
  */
-#include "nonsmooth/planes/cone_interior.h"
+#include "nonsmooth/cones/cone_interior.h"
 
 #include "expressions.h"
 
@@ -44,7 +44,7 @@ static double solve(const struct ContactImpulses *impulses) {
     else if (is_first)
       own_rate[row] = own_rate[row + 1] = 0.5 * (w[0] + w[n + 1]) + hypot(0.5 * (w[0] - w[n + 1]), 0.5 * (w[1] + w[n]));
   }
-  struct Cones cones = {&resolution, impulses, rate, impulse, own_rate};
+  struct Cones cones = {&resolution, &cone_path, impulses, rate, impulse, own_rate};
   return cone_interior(&cones, 1e-12, true, work);
 }
 

@@ -12,8 +12,8 @@ static double block[4 * MOST * MOST + 20 * MOST + MOST * (2 * MOST + 3)];
 
 /* Returns groups of `size` contacts, with free accelerations of -1, and k for each group. */
 static struct RestingForces groups(size_t count, size_t size, const double *k) {
-  assert_true(resting_forces_bytes(count) <= sizeof block);
-  struct RestingForces resting = resting_forces_in(block, count);
+  assert_true(resting_forces_bytes(NULL, count) <= sizeof block);
+  struct RestingForces resting = resting_forces_in(block, NULL, count);
   for (size_t i = 0; i < count; i++) {
     resting.free[i] = -1.0;
     for (size_t j = 0; j < count; j++)

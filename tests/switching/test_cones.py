@@ -14,8 +14,8 @@ from building import functions_of
 from scipy import sparse
 
 SOURCES = [
-    "tests/c/cones.c", "src/runtime/nonsmooth/contacts/elimination.c",
-    *(f"src/runtime/nonsmooth/planes/{name}.c" for name in ("cones", "cone_impulses", "cone_interior", "cone_newton")),
+    "tests/c/cones.c", "src/runtime/support/elimination.c",
+    *(f"src/runtime/nonsmooth/cones/{name}.c" for name in ("cones", "cone_impulses", "cone_interior", "cone_newton", "cone_search", "impulses")),
 ]  # fmt: skip
 
 

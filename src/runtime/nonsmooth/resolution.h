@@ -65,8 +65,6 @@ static inline enum Status resolution_status(const struct Resolution *resolution)
   return resolution->occasion == AT_START ? STATUS_ERROR : STATUS_DISCARD;
 }
 
-struct ContactImpulses;
-
 /* Contacts; FMUs without any do not link them. */
 struct ContactLaws {
   /*
@@ -118,16 +116,6 @@ struct FrictionLaws {
   bool (*slip_where_stopped)(struct Resolution *resolution);
   /* Lets the friction in a plane slide or stick; NULL without any. */
   void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
-  /*
-   * Finds the contact impulses with Coulomb friction in planes, from the rates before the impact. The rates after
-   * it fulfil the complementarity conditions of impacts.c. False if none are found. NULL without frictions in
-   * planes.
-   */
-  bool (*find_impulses)(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
-                        double *impulse);
-  /* True if other impulses also fulfil these conditions, with another motion. */
-  bool (*has_other_impulses)(const struct Resolution *resolution, const struct ContactImpulses *impulses,
-                             const double *rate, const double *impulse);
 };
 
 /* Returns the length of value[]. */

@@ -245,7 +245,8 @@ static bool create_resting(struct Resolution *resolution, struct RestingContacts
     *problem = no_contact_impulses;
     return false;
   }
-  size_t n = resting->impulses.contact_count, bytes = resting_forces_bytes(n);
+  const struct ConePath *path = resolution->switches->cone_path;
+  size_t n = resting->impulses.contact_count, bytes = resting_forces_bytes(path, n);
   if (n > 0) resting->block = scratch_take(resolution->instance, SCRATCH_RESTING, bytes + n * sizeof(double));
   if (resting->block == NULL) {
     if (n > 0) {
@@ -256,7 +257,7 @@ static bool create_resting(struct Resolution *resolution, struct RestingContacts
     return false;
   }
   resting->unit = resting->block;
-  resting->forces = resting_forces_in(resting->unit + n, n);
+  resting->forces = resting_forces_in(resting->unit + n, path, n);
   fill_resting(resolution, resting);
   return true;
 }

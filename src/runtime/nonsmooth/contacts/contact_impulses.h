@@ -4,24 +4,9 @@
  */
 #pragma once
 
+#include "nonsmooth/cones/impulses.h"
 #include "nonsmooth/resolution.h"
 #include "instance/active_constraints.h"
-
-/* Rows are the contacts that take part, then the frictions on them. delassus is symmetric and positive semidefinite. */
-struct ContactImpulses {
-  size_t contact_count, friction_count, count; /* count: the sum of both */
-  size_t *member;                              /* indices of contacts, then of frictions, in the switch table */
-  double *velocities;                          /* count rows: change of the velocities by each unit impulse */
-  double *delassus;                            /* count rows: Delassus matrix */
-  double *rate;                                /* of the gaps, and the velocities of the frictions */
-  double rounding;                             /* rounding error bound of the rates */
-  size_t deciding_count; /* leading rows on whose impulses friction limits depend: those of the contacts */
-  double *coefficient;   /* friction_count rows: friction limit by a unit impulse of each of them */
-  double *given;         /* friction limits without them; NULL for none */
-  /* Workspace: rows of the Jacobian; an impulse of 0 on each coordinate and constraint, its response, and values. */
-  double *jacobian_row, *impulse, *response, *value;
-  void *block;
-};
 
 /*
  * Collects the contacts that take part, and the frictions on them that do, at the rates in resolution->value; active

@@ -14,7 +14,6 @@
 #include <stdint.h>
 
 #include "detection/indicators.h"
-#include "nonsmooth/contacts/impact_outcomes.h"
 #include "nonsmooth/contacts/jams.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
@@ -453,5 +452,4 @@ const struct FrictionLaws friction_laws = {.act = frictions_act,
                                            .check = frictions_check,
                                            .release = frictions_release,
                                            .resolve_jam = jams_resolve,
-                                           .explain_jam = frictions_explain_jam,
-                                           .has_other_impulses = impact_has_others};
+                                           .explain_jam = frictions_explain_jam};

@@ -8,8 +8,3 @@
  * else without restitution. False, after logging the cause, if no impulses are found.
  */
 bool impacts_take(struct Resolution *resolution, bool bounces);
-
-struct ContactImpulses;
-
-/* True if impulses cause another motion than found, beyond rounding, and gain no energy. */
-bool is_other_outcome(const struct ContactImpulses *impulses, const double *impulse, const double *found);

@@ -14,8 +14,8 @@
 #include <math.h>
 
 #include "arithmetic.h"
-#include "nonsmooth/contacts/complementarity.h"
-#include "nonsmooth/contacts/elimination.h"
+#include "nonsmooth/cones/cone_search.h"
+#include "support/elimination.h"
 
 /* Contacts of a group up to which all active sets are tried: at most 4096. */
 enum { COMBINED_LIMIT = 12 };
@@ -26,17 +26,17 @@ static const double locking_share = 1e-3;
 /* Smaller elements of S are rounding errors and couple no contacts; S is scaled to a size of 1. */
 static const double least_coupling = 1e-13;
 
-static size_t work_count(size_t count) {
-  size_t lemke = count * count + 2 * count + complementarity_work_count(count), combined = count * (count + 1);
-  return count > COMBINED_LIMIT ? lemke : combined;
+static size_t work_count(const struct ConePath *path, size_t count) {
+  size_t large = count * count + 2 * count + pressing_forces_work_count(path, count), combined = count * (count + 1);
+  return count > COMBINED_LIMIT ? large : combined;
 }
 
-size_t resting_forces_bytes(size_t count) {
-  return (count * count + 6 * count + work_count(count)) * sizeof(double) + count * sizeof(size_t);
+size_t resting_forces_bytes(const struct ConePath *path, size_t count) {
+  return (count * count + 6 * count + work_count(path, count)) * sizeof(double) + count * sizeof(size_t);
 }
 
-struct RestingForces resting_forces_in(void *block, size_t count) {
-  struct RestingForces resting = {.count = count, .s = block};
+struct RestingForces resting_forces_in(void *block, const struct ConePath *path, size_t count) {
+  struct RestingForces resting = {.count = count, .path = path, .s = block};
   resting.free = resting.s + count * count;
   resting.present = resting.free + count;
   resting.found = resting.present + count;
@@ -44,7 +44,7 @@ struct RestingForces resting_forces_in(void *block, size_t count) {
   resting.force = resting.found_force + count;
   resting.motion = resting.force + count;
   resting.work = resting.motion + count;
-  resting.group = (size_t *)(resting.work + work_count(count));
+  resting.group = (size_t *)(resting.work + work_count(path, count));
   return resting;
 }
 
@@ -163,15 +163,15 @@ static enum RestingSolutions count_motions(const struct RestingForces *resting, 
   return count == 0 ? NO_MOTION : count == 1 ? ONE_MOTION : SEVERAL_MOTIONS;
 }
 
-/* Finds the forces of a group by Lemke's method, at free accelerations scaled to a size of 1. False if it fails. */
-static bool find_by_pivoting(const struct RestingForces *resting, double size) {
+/* Finds the forces of a group at free accelerations scaled to a size of 1. False if none are found. */
+static bool find_in_group(const struct RestingForces *resting, double size) {
   size_t n = resting->group_count;
   double *matrix = resting->work, *q = matrix + n * n, *z = q + n;
   for (size_t i = 0; i < n; i++) {
     q[i] = size > 0.0 ? resting->free[resting->group[i]] / size : 0.0;
     for (size_t j = 0; j < n; j++) matrix[i * n + j] = between(resting, i, j);
   }
-  if (!complementarity_solve(n, matrix, q, z, z + n)) return false;
+  if (!pressing_forces_find(resting->path, n, matrix, q, z, z + n)) return false;
   for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = z[i] * size;
   return is_solution(resting, size);
 }
@@ -245,7 +245,7 @@ static enum RestingSolutions solve_group(const struct RestingForces *resting, bo
   bool is_one = is_surely_one(resting), is_small = resting->group_count <= COMBINED_LIMIT;
   if (is_solved && (is_one || (is_small && resting->lasts && is_stable(resting, size)))) return ONE_MOTION;
   if (is_small) return choose_motion(resting, is_solved, size);
-  if (!is_solved && !find_by_pivoting(resting, size)) return is_one ? NO_MOTION : PERHAPS_NONE;
+  if (!is_solved && !find_in_group(resting, size)) return is_one ? NO_MOTION : PERHAPS_NONE;
   if (!is_solved) note_solution(resting);
   return is_one ? ONE_MOTION : PERHAPS_OTHERS;
 }

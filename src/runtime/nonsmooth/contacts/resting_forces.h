@@ -4,10 +4,13 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+struct ConePath;
+
 /* The problem, with S by rows; it is scaled such that its diagonal is 1 without friction. */
 struct RestingForces {
   size_t count;
-  bool lasts; /* the motion has led to the present forces; false at the start */
+  const struct ConePath *path; /* of the switch table */
+  bool lasts;                  /* the motion has led to the present forces; false at the start */
   double *s, *free;
   double *present;             /* the present forces; 0 for open contacts */
   double *found, *found_force; /* accelerations and forces of the first solution */
@@ -23,10 +26,10 @@ enum RestingSolutions { ONE_MOTION, PERHAPS_OTHERS, SEVERAL_MOTIONS, PERHAPS_NON
 static const double rounded_force = 1e-9;
 
 /* Returns the bytes of a problem with this number of contacts. */
-size_t resting_forces_bytes(size_t count);
+size_t resting_forces_bytes(const struct ConePath *path, size_t count);
 
 /* Divides a block of resting_forces_bytes() among the parts. */
-struct RestingForces resting_forces_in(void *block, size_t count);
+struct RestingForces resting_forces_in(void *block, const struct ConePath *path, size_t count);
 
 /* Returns the largest magnitude of the free accelerations. */
 double largest_free_acceleration(const struct RestingForces *resting);
@@ -34,7 +37,7 @@ double largest_free_acceleration(const struct RestingForces *resting);
 /*
  * Determines whether the solution exists and is unique in its accelerations. is_solved: the present forces are a
  * solution. If they last and are stable, they count as unique. Otherwise a solution is stored in found and found_force.
- * Groups of up to 12 contacts are enumerated up to a second solution. In larger groups Lemke's method finds one, and a
+ * Groups of up to 12 contacts are enumerated up to a second solution. In larger groups cone_impulses.c finds one, and a
  * sufficient condition decides on uniqueness.
  */
 enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved);

@@ -13,8 +13,8 @@
 
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "evaluation/services.h"
-#include "nonsmooth/planes/cone_impulses.h"
-#include "nonsmooth/planes/cones.h"
+#include "nonsmooth/cones/cone_impulses.h"
+#include "nonsmooth/cones/cones.h"
 
 /* Accelerations, also those by forces, are rounding errors below this share of the largest one. */
 static const double least_force_share = 1e-9;

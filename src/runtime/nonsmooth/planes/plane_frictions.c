@@ -13,10 +13,10 @@
 #include <math.h>
 #include <string.h>
 
+#include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/frictions.h"
 #include "nonsmooth/contacts/jams.h"
 #include "evaluation/evaluate.h"
-#include "nonsmooth/planes/cone_impulses.h"
 #include "nonsmooth/planes/plane_forces.h"
 #include "nonsmooth/planes/plane_rests.h"
 
@@ -176,6 +176,4 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .guess = guess,
                                                  .resolve_together = plane_forces_resolve,
                                                  .slip_where_stopped = let_stopped_slip,
-                                                 .set_plane = set_plane,
-                                                 .find_impulses = cone_impulses_find,
-                                                 .has_other_impulses = cone_impulses_have_others};
+                                                 .set_plane = set_plane};

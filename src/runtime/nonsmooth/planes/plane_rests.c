@@ -19,8 +19,8 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/frictions.h"
 #include "evaluation/services.h"
-#include "nonsmooth/planes/cone_impulses.h"
-#include "nonsmooth/planes/cones.h"
+#include "nonsmooth/cones/cone_impulses.h"
+#include "nonsmooth/cones/cones.h"
 
 /* Relative to the largest acceleration: smaller ones are rounding errors. */
 static const double rounded_share = 1e-9;

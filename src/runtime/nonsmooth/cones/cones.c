@@ -1,7 +1,13 @@
-#include "nonsmooth/planes/cones.h"
+#include "nonsmooth/cones/cones.h"
 
 #include <float.h>
 #include <math.h>
+
+/*
+ * Of the largest rate: impulses with a larger residual solve nothing. Where there is no solution, impulses grow without
+ * end, and the residual is small beside them, but not beside the rates.
+ */
+static const double unsolved_share = 0.1;
 
 double cones_rate_behind(const struct Cones *cones, size_t row) {
   const double *delassus = &cones->impulses->delassus[row * cones->impulses->count];
@@ -53,5 +59,6 @@ double cones_largest(const struct Cones *cones) {
 double cones_relative_miss(const struct Cones *cones, double miss) {
   double fastest = 0.0;
   for (size_t i = 0; i < cones->impulses->count; i++) fastest = fmax(fastest, fabs(cones->rate[i]));
-  return miss > DBL_EPSILON * fastest ? miss / cones_largest(cones) : 0.0;
+  if (miss <= DBL_EPSILON * fastest) return 0.0;
+  return miss < unsolved_share * fastest ? miss / cones_largest(cones) : INFINITY;
 }

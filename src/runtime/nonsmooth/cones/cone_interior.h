@@ -1,7 +1,7 @@
 /* Interior-point method for impulses, or forces, with Coulomb friction cones. */
 #pragma once
 
-#include "nonsmooth/planes/cones.h"
+#include "nonsmooth/cones/cones.h"
 
 /* Returns the number of doubles of workspace for n rows. */
 size_t cone_interior_work_count(size_t n);
@@ -12,3 +12,6 @@ size_t cone_interior_work_count(size_t n);
  * impulses found, relative to the largest one.
  */
 double cone_interior(struct Cones *cones, double enough, bool is_centered, double *work);
+
+/* These functions, for the switch tables of systems with frictions on contacts or in planes. */
+extern const struct ConePath cone_path;

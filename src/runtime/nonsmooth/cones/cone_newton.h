@@ -1,7 +1,7 @@
 /* Semismooth Newton method for impulses with Coulomb friction cones. */
 #pragma once
 
-#include "nonsmooth/planes/cones.h"
+#include "nonsmooth/cones/cones.h"
 
 /* Returns the number of doubles of workspace for n rows. */
 size_t cone_newton_work_count(size_t n);

@@ -1,11 +1,12 @@
-/* Impulses of contacts with Coulomb friction in planes. */
+/* Impulses and forces of contacts with Coulomb friction. */
 #pragma once
 
-#include "nonsmooth/contacts/contact_impulses.h"
+#include "nonsmooth/cones/impulses.h"
+#include "nonsmooth/resolution.h"
 
 /*
- * Implements find_impulses of struct FrictionLaws. Returns false if none are found; impulse[] then holds the last
- * trial. Returns false, too, if no impulse moves one of the contacts, or memory is missing.
+ * Finds the impulses of an impact, from the rates before it, those of contacts times 1 + e. False if none are found;
+ * impulse[] then holds the last trial. False, too, if no impulse moves one of the contacts, or memory is missing.
  */
 bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                         double *impulse);
@@ -18,6 +19,9 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
 bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                       double *force, double *error);
 
-/* Implements has_other_impulses. It searches from several starts, and so may miss some. */
+/*
+ * True if other impulses also fulfil the law, with another motion and no gain of energy. It searches from several
+ * starts, and so may miss some.
+ */
 bool cone_impulses_have_others(const struct Resolution *resolution, const struct ContactImpulses *impulses,
                                const double *rate, const double *impulse);

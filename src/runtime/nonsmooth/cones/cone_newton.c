@@ -11,7 +11,7 @@
  * determine keep their values. There is no line search: the method ends at the first step that does not reduce the
  * residual enough, and undoes that step.
  */
-#include "nonsmooth/planes/cone_newton.h"
+#include "nonsmooth/cones/cone_newton.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "nonsmooth/contacts/elimination.h"
+#include "support/elimination.h"
 
 #include <math.h>
 

@@ -21,13 +21,13 @@
  * F. Cadoux: Applications of an existence result for the Coulomb friction problem, Recent Advances in Contact
  * Mechanics, 2013).
  */
-#include "nonsmooth/planes/cone_interior.h"
+#include "nonsmooth/cones/cone_interior.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "nonsmooth/contacts/elimination.h"
-#include "nonsmooth/planes/cone_newton.h"
+#include "support/elimination.h"
+#include "nonsmooth/cones/cone_newton.h"
 #include "support/arena.h"
 
 /* Steps of a path at most; steps between two trials of Newton's method; associated problems at most. */
@@ -402,3 +402,5 @@ double cone_interior(struct Cones *cones, double enough, bool is_centered, doubl
   memcpy(cones->impulse, interior.best, n * sizeof *interior.best);
   return interior.least;
 }
+
+const struct ConePath cone_path = {.work_count = cone_interior_work_count, .find = cone_interior};

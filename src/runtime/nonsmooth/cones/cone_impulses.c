@@ -1,0 +1,112 @@
+/* The problem of cone_search.c for an event resolution. */
+#include "nonsmooth/cones/cone_impulses.h"
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "evaluation/services.h"
+#include "nonsmooth/cones/cone_search.h"
+
+/* Other impulses of up to this number of rows are searched, from this number of random starts. */
+enum { OTHER_ROWS = 12, RANDOM_STARTS = 64 };
+
+/* Trials from each start in the search for other impulses, and their largest relative residual. */
+enum { OTHER_LAW_TRIALS = 2 };
+static const double law_nearly_holds = 1e-9;
+
+/* Directions of the friction impulses at which the search for other impulses starts; along a line the third is none. */
+static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
+enum { DIRECTIONS = sizeof start_directions / sizeof *start_directions };
+
+/* Takes workspace for the cones and their solvers; also for the impulses if impulse is NULL. NULL without memory. */
+static double *create_cones(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                            const double *rate, double *impulse, struct Cones *cones) {
+  struct Instance *instance = resolution->instance;
+  const struct ConePath *path = resolution->switches->cone_path;
+  size_t n = impulses->count;
+  double *block = scratch_take(instance, SCRATCH_CONES, (4 * n + cones_work_count(path, n)) * sizeof *block);
+  *cones = (struct Cones){.resolution = resolution, .path = path, .impulses = impulses, .rate = rate, .scale = block};
+  if (block == NULL) {
+    solver_is_out_of_memory(instance);
+    return NULL;
+  }
+  cones->impulse = impulse != NULL ? impulse : block + n;
+  return block + 2 * n;
+}
+
+bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
+                        double *impulse) {
+  struct Cones cones;
+  size_t n = impulses->count;
+  double *work = create_cones(resolution, impulses, rate, impulse, &cones);
+  if (work == NULL) return false;
+  bool is_done = cones_fill_scales(&cones) && cones_find_impulses(&cones, work, work + n, work + 2 * n);
+  scratch_return(resolution->instance, SCRATCH_CONES);
+  return is_done;
+}
+
+bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
+                      double *force, double *error) {
+  struct Cones cones;
+  size_t n = impulses->count;
+  double *work = create_cones(resolution, impulses, rate, force, &cones);
+  if (work == NULL) return false;
+  double miss = cones_fill_scales(&cones) ? cones_find_forces(&cones, work, work + n, work + 2 * n) : INFINITY;
+  bool is_done = miss <= law_roughly_holds;
+  *error = is_done ? 2.0 * miss * cones_largest(&cones) : INFINITY;
+  scratch_return(resolution->instance, SCRATCH_CONES);
+  return is_done;
+}
+
+/* Returns a random number from 0 to count - 1, by the generator of D. E. Knuth and H. W. Lewis. */
+static size_t random_below(uint32_t *seed, size_t count) {
+  *seed = *seed * 1664525u + 1013904223u;
+  return (*seed >> 8) % count;
+}
+
+/* Lets the frictions push to their limits: in one of the directions, or in random ones for DIRECTIONS. */
+static void fill_frictions(struct Cones *cones, size_t direction, uint32_t *seed) {
+  for (size_t row = cones->impulses->contact_count; row < cones->impulses->count;) {
+    const double *way = start_directions[direction < DIRECTIONS ? direction : random_below(seed, DIRECTIONS)];
+    size_t rows = cones_row_count(cones, row);
+    cones->impulse[row] = way[0] * cones_limit(cones, row);
+    if (rows == 2) cones->impulse[row + 1] = way[1] * cones_limit(cones, row + 1);
+    row += rows;
+  }
+}
+
+/* Fills a start where one contact has the largest impulse, the others none, and its frictions push in one direction. */
+static void fill_single_start(struct Cones *cones, double largest, size_t number) {
+  memset(cones->impulse, 0, cones->impulses->count * sizeof *cones->impulse);
+  cones->impulse[number / DIRECTIONS] = largest;
+  fill_frictions(cones, number % DIRECTIONS, NULL);
+}
+
+/* Fills a random start: a third of the contacts has no impulse, others 1/20 to 20 times the largest one. */
+static void fill_random_start(struct Cones *cones, double largest, uint32_t *seed) {
+  for (size_t i = 0; i < cones->impulses->contact_count; i++) {
+    bool presses = random_below(seed, 3) != 0;
+    cones->impulse[i] = presses ? largest * exp((double)random_below(seed, 7) - 3.0) : 0.0;
+  }
+  fill_frictions(cones, DIRECTIONS, seed);
+}
+
+bool cone_impulses_have_others(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                               const double *rate, const double *impulse) {
+  struct Cones cones;
+  uint32_t seed = 1;
+  size_t n = impulses->count, single = impulses->contact_count * DIRECTIONS;
+  double *work = n > OTHER_ROWS ? NULL : create_cones(resolution, impulses, rate, NULL, &cones), largest = 0.0;
+  bool is_other = false, moves = work != NULL && cones_fill_scales(&cones);
+  for (size_t i = 0; i < impulses->contact_count; i++) largest = fmax(largest, impulse[i]);
+  for (size_t i = 0; i < single + RANDOM_STARTS && moves && !is_other; i++) {
+    if (i < single) fill_single_start(&cones, largest, i);
+    else fill_random_start(&cones, largest, &seed);
+    memcpy(work + n, cones.impulse, n * sizeof *cones.impulse);
+    double miss = cones_search_from(&cones, AT_ONCE, OTHER_LAW_TRIALS, work, work + n, work + 2 * n);
+    is_other = miss <= law_nearly_holds && is_other_outcome(impulses, cones.impulse, impulse);
+  }
+  if (work != NULL) scratch_return(resolution->instance, SCRATCH_CONES);
+  return is_other;
+}

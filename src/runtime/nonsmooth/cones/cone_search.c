@@ -1,0 +1,163 @@
+/*
+ * Impulses p of contacts and frictions. With the rates u = rate + W p they fulfil Signorini's and Coulomb's conditions:
+ *
+ *   contact:   u >= 0,  p >= 0,  u p = 0,
+ *   friction:  |p| <= mu p_contact,  and  p = -mu p_contact u / |u|  where u is not 0.
+ *
+ * It tries in turn:
+ *
+ * 1. A semismooth Newton method, from no impulse (cone_newton.c).
+ * 2. Projected gradient sweeps, O(n^2) each: all impulses take a step against their rates, and are projected. Newton's
+ *    method follows after 10 sweeps, after 20 more, and so on, up to LAW_TRIALS times.
+ * 3. An interior-point method (cone_interior.c). Contacts without friction need none: their problem is convex, and the
+ *    sweeps converge.
+ * 4. Gauss-Seidel sweeps, in which the impulses change one after another, as in 2.
+ *
+ * All impulses of a step in 1 to 3 change at once, so that the result does not depend on their order. A symmetric
+ * problem has symmetric impulses, also where there are several solutions.
+ *
+ * The search fails if the best residual is larger than law_roughly_holds and than the rounding error of the rates.
+ * Friction that presses a contact together may leave no solution (Painleve's paradox).
+ *
+ * The same conditions hold between forces and accelerations at rest (plane_forces.c, resting_forces.c).
+ */
+#include "nonsmooth/cones/cone_search.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#include "nonsmooth/cones/cone_newton.h"
+
+/* Trials; without an interior path there are more. */
+enum { LAW_TRIALS = 4, LAW_TRIALS_ALONE = 12 };
+
+/* How many more sweeps each trial makes than the one before; the first one makes none. */
+enum { LAW_SWEEPS = 10 };
+
+/* A relative residual at which a search ends. */
+static const double law_holds = 1e-12;
+
+/* Returns an upper bound of the eigenvalues of W, scaled such that W_ii = 1, by the row of W; times W_ii. */
+static double bound_of_row(const struct Cones *cones, size_t row) {
+  size_t n = cones->impulses->count;
+  double sum = 0.0;
+  for (size_t j = 0; j < n; j++)
+    if (cones->scale[j] > 0.0)
+      sum += fabs(cones->impulses->delassus[row * n + j]) * sqrt(cones->scale[row] / cones->scale[j]);
+  return fmax(sum, cones->scale[row]);
+}
+
+/* Fills the steps of a sweep: 1 / bound of a row, or 1 / W_ii in turn; 0 for a scale of 0. A plane has one step. */
+static void fill_sweep_steps(const struct Cones *cones, enum Sweeps kind, double *step) {
+  for (size_t row = 0; row < cones->impulses->count;) {
+    size_t rows = cones_row_count(cones, row);
+    double bound = 0.0;
+    for (size_t i = row; i < row + rows; i++)
+      bound = fmax(bound, kind == IN_TURN ? cones->scale[i] : bound_of_row(cones, i));
+    for (size_t i = row; i < row + rows; i++) step[i] = cones->scale[i] > 0.0 ? 1.0 / bound : 0.0;
+    row += rows;
+  }
+}
+
+/* Takes a step against the rates, and projects it onto the disk of the limit, or the interval. */
+static void update_friction_impulse(struct Cones *cones, size_t row, size_t rows, const double *rate, double step) {
+  double whole[2] = {0.0, 0.0}, limit = fmax(cones_limit(cones, row), 0.0);
+  for (size_t i = 0; i < rows; i++) whole[i] = cones->impulse[row + i] - step * rate[i];
+  double size = hypot(whole[0], whole[1]), share = size > limit ? limit / size : 1.0;
+  for (size_t i = 0; i < rows; i++) cones->impulse[row + i] = share * whole[i];
+}
+
+/* Makes sweeps. work: 2 n numbers. */
+static void sweep_impulses(struct Cones *cones, enum Sweeps kind, int count, double *work) {
+  size_t n = cones->impulses->count;
+  double *rate = work, *step = work + n;
+  fill_sweep_steps(cones, kind, step);
+  for (int k = 0; k < count; k++) {
+    for (size_t row = 0; row < n; row++) rate[row] = cones_rate_behind(cones, row);
+    for (size_t row = 0; row < n; row += cones_row_count(cones, row)) {
+      size_t rows = cones_row_count(cones, row);
+      for (size_t i = row; i < row + rows && kind == IN_TURN; i++) rate[i] = cones_rate_behind(cones, i);
+      if (row < cones->impulses->contact_count)
+        cones->impulse[row] = fmax(cones->impulse[row] - step[row] * rate[row], 0.0);
+      else if (step[row] > 0.0) update_friction_impulse(cones, row, rows, rate + row, step[row]);
+    }
+  }
+}
+
+/* Returns W_ii of a row; in a plane the larger eigenvalue of its 2 x 2 block. */
+static double scale_of_impulse(const struct Cones *cones, size_t row, size_t rows) {
+  size_t n = cones->impulses->count;
+  const double *m = &cones->impulses->delassus[row * n + row];
+  double scale = m[0];
+  if (rows == 2) scale = 0.5 * (m[0] + m[n + 1]) + hypot(0.5 * (m[0] - m[n + 1]), 0.5 * (m[1] + m[n]));
+  return scale > DBL_MIN ? scale : 0.0;
+}
+
+bool cones_fill_scales(struct Cones *cones) {
+  bool moves = true;
+  for (size_t row = 0; row < cones->impulses->count;) {
+    size_t rows = cones_row_count(cones, row);
+    for (size_t i = 0; i < rows; i++) cones->scale[row + i] = scale_of_impulse(cones, row, rows);
+    moves &= row >= cones->impulses->contact_count || cones->scale[row] > 0.0;
+    row += rows;
+  }
+  return moves;
+}
+
+double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials, double *best, double *swept, double *work) {
+  size_t bytes = cones->impulses->count * sizeof(double);
+  double least = INFINITY;
+  for (int trial = 0; trial < trials && !(least <= law_holds); trial++) {
+    memcpy(cones->impulse, swept, bytes);
+    sweep_impulses(cones, kind, LAW_SWEEPS * trial, work);
+    memcpy(swept, cones->impulse, bytes);
+    double miss = cones_relative_miss(cones, cone_newton(cones, work));
+    if (miss < least) memcpy(best, cones->impulse, bytes);
+    least = fmin(least, miss);
+  }
+  memcpy(cones->impulse, best, bytes);
+  return least;
+}
+
+size_t cones_work_count(const struct ConePath *path, size_t n) {
+  return path != NULL ? path->work_count(n) : cone_newton_work_count(n);
+}
+
+/* True if the residual is small, or a rounding error of velocities, as in the slowest impacts. */
+static bool is_accepted(struct Cones *cones, double miss, double *work) {
+  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->impulses->rounding;
+}
+
+bool cones_find_impulses(struct Cones *cones, double *best, double *swept, double *work) {
+  double miss =
+      cones_search_from(cones, AT_ONCE, cones->path != NULL ? LAW_TRIALS : LAW_TRIALS_ALONE, best, swept, work);
+  if (miss <= law_holds) return true;
+  if (cones->path == NULL) return is_accepted(cones, miss, work);
+  memcpy(best, cones->impulse, cones->impulses->count * sizeof *best);
+  double other = cones->path->find(cones, law_holds, false, work);
+  if (!(other < miss)) memcpy(cones->impulse, best, cones->impulses->count * sizeof *best);
+  if (is_accepted(cones, fmin(other, miss), work)) return true;
+  memset(swept, 0, cones->impulses->count * sizeof *swept);
+  return is_accepted(cones, cones_search_from(cones, IN_TURN, LAW_TRIALS, best, swept, work), work);
+}
+
+double cones_find_forces(struct Cones *cones, double *best, double *swept, double *work) {
+  double miss = cones->path->find(cones, law_holds, true, work);
+  if (miss <= law_roughly_holds) return miss;
+  memset(swept, 0, cones->impulses->count * sizeof *swept);
+  return cones_search_from(cones, IN_TURN, LAW_TRIALS, best, swept, work);
+}
+
+size_t pressing_forces_work_count(const struct ConePath *path, size_t n) {
+  return 3 * n + cones_work_count(path, n);
+}
+
+bool pressing_forces_find(const struct ConePath *path, size_t n, double *delassus, const double *rate, double *force,
+                          double *work) {
+  struct ContactImpulses contacts = {.contact_count = n, .count = n, .deciding_count = n, .delassus = delassus};
+  struct Cones cones = {.path = path, .impulses = &contacts, .rate = rate, .impulse = force, .scale = work};
+  memset(force, 0, n * sizeof *force);
+  memset(work, 0, 3 * n * sizeof *work);
+  return cones_fill_scales(&cones) && cones_find_impulses(&cones, work + n, work + 2 * n, work + 3 * n);
+}
