@@ -241,6 +241,13 @@ def test_a_disk_is_an_ellipse():
     assert area == pytest.approx(math.pi * radius * least, rel=0.03)
 
 
+def test_wheels_of_an_icon():
+    """The axles of the car are 2.7 m apart, its wheels have a radius of 0.3 m."""
+    wheels = [line for line in shapes("HalfCar", "polyline", "link") if len(line) > 2]
+    low, high = (np.array([bound(line, axis=0) for line in wheels]) for bound in (np.min, np.max))
+    assert high - low == pytest.approx(np.full((2, 2), 0.6 / 2.7 * abs(low[0, 0] - low[1, 0])), abs=0.2)
+
+
 def test_drawn_lines(drawn):
     """
     The spring of the block runs from the wall to the block; the belt is below it, 2.1 m between the axes of pulleys of radius 0.1 m. The

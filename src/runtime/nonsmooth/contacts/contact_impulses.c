@@ -89,8 +89,9 @@ bool let_stopped_slip(struct Resolution *resolution) {
   if (switches->plane_count == 0) return true;
   if (!evaluate_velocities(resolution)) return false;
   for (size_t i = 0; i < switches->plane_count; i++) {
-    size_t along = switches->planes[i].along;
-    if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > least_speed))
+    size_t along = switches->planes[i].along, velocity = friction_slot(switches, along, FRICTION_VELOCITY);
+    double none = fmax(least_speed, resolution->error_bound[velocity]);
+    if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > none))
       set_friction(resolution, along, 1.0);
   }
   return true;
