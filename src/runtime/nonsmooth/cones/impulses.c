@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "arithmetic.h"
+
 /* Energy gains below this fraction of the terms of the work are rounding errors. */
 static const double least_gain = 1e-13;
 
