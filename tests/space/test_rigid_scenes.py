@@ -143,12 +143,12 @@ THROWN = [(1.2, 0.1, -1.5, 1.1, -0.3, 0.3), (-0.1, 0.1, 0.0, -0.7, -1.4, 0.3), (
           (-0.3, 1.4, -0.4, -0.8, -0.1, -0.9)]  # fmt: skip
 
 
-def run(name, values, time, tolerance=None):
+def run(name, values, time, tolerance=None, step=0.02):
     """Simulate to a time, or until the simulation stops; return the energies."""
     instance = fmu.Instance(name).initialize(values, tolerance)
     energies = [instance.get("totalEnergy")]
     while instance.time < time - 1e-9:
-        instance.step(0.02)
+        instance.step(step)
         energies.append(instance.get("totalEnergy"))
         assert np.isfinite(energies[-1]) and energies[-1] < energies[-2] + 1e-9
     return instance, energies
@@ -313,9 +313,9 @@ def test_rocking_column(mu, spins, slides):
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-6, 1e-7, 1e-8])
 def test_a_box_lands_while_it_creeps(tolerance):
-    """The friction of one corner creeps where that of the other one sticks, and stops with it."""
+    """The friction of one corner creeps where that of the other one sticks, and stops with it. What rounding leaves has no direction."""
     values = {"mu": 0.37081416067949374, "e": 0.3, "aa": 0.7292743564716355, "avx": -1.397045628314454, "avz": -0.7565318281430371, "aw": -1.1113084408259906}
-    instance, energies = run("ThrownInPlane", values, 2.0, tolerance)
+    instance, energies = run("ThrownInPlane", values, 2.0, tolerance, step=0.05)
     assert energies[-1] == pytest.approx(2 * 9.81 * instance.get("az"), abs=1e-9) and instance.get("az") == pytest.approx(0.1, abs=1e-9)
     instance.free()
 
