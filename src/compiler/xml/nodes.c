@@ -48,5 +48,5 @@ char *text_of(xmlNodePtr node) {
 
 bool is_robot(xmlDocPtr document) {
   const xmlNode *root = xmlDocGetRootElement(document);
-  return is_element(root, "robot") || is_element(root, "mujoco");
+  return root != NULL && (is_element(root, "robot") || is_element(root, "mujoco"));
 }

@@ -23,5 +23,5 @@ char *attribute(xmlNodePtr node, const char *name);
  */
 char *text_of(xmlNodePtr node);
 
-/* True if the document describes a robot (URDF or MJCF) instead of a system. */
+/* True if the document describes a robot (URDF or MJCF) instead of a system; false before its first element is read. */
 bool is_robot(xmlDocPtr document);
