@@ -172,3 +172,7 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
   }
   return metadata;
 }
+
+bool switches_need_cone_path(const struct SwitchTable *switches) {
+  return switches->rests_on != NULL || switches->plane_count > 0;
+}

@@ -1,12 +1,12 @@
-/* The problem of cone_search.c for an event resolution. */
+/* Solves the problem of cone_search.c in an event resolution. */
 #include "nonsmooth/cones/cone_impulses.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "evaluation/services.h"
 #include "nonsmooth/cones/cone_search.h"
+#include "support/next_random.h"
 
 /* Other impulses of up to this number of rows are searched, from this number of random starts. */
 enum { OTHER_ROWS = 12, RANDOM_STARTS = 64 };
@@ -15,7 +15,7 @@ enum { OTHER_ROWS = 12, RANDOM_STARTS = 64 };
 enum { OTHER_LAW_TRIALS = 2 };
 static const double law_nearly_holds = 1e-9;
 
-/* Directions of the friction impulses at which the search for other impulses starts; along a line the third is none. */
+/* Directions of the friction impulses at which the search for other impulses starts. Along a line the last two are 0. */
 static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
 enum { DIRECTIONS = sizeof start_directions / sizeof *start_directions };
 
@@ -59,10 +59,9 @@ bool cone_forces_find(const struct Resolution *resolution, const struct ContactI
   return is_done;
 }
 
-/* Returns a random number from 0 to count - 1, by the generator of D. E. Knuth and H. W. Lewis. */
+/* Returns a random number from 0 to count - 1. */
 static size_t random_below(uint32_t *seed, size_t count) {
-  *seed = *seed * 1664525u + 1013904223u;
-  return (*seed >> 8) % count;
+  return next_random(seed) % count;
 }
 
 /* Lets the frictions push to their limits: in one of the directions, or in random ones for DIRECTIONS. */

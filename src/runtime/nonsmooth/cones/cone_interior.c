@@ -26,9 +26,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "support/elimination.h"
 #include "nonsmooth/cones/cone_newton.h"
 #include "support/arena.h"
+#include "support/elimination.h"
 
 /* Steps of a path at most; steps between two trials of Newton's method; associated problems at most. */
 enum { PATH_STEPS = 40, TRIAL_STEPS = 3, ASSOCIATED_LIMIT = 60, UNDAMPED_LIMIT = 20 };

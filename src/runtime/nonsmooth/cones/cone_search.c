@@ -38,7 +38,7 @@ enum { LAW_SWEEPS = 10 };
 /* A relative residual at which a search ends. */
 static const double law_holds = 1e-12;
 
-/* Returns an upper bound of the eigenvalues of W, scaled such that W_ii = 1, by the row of W; times W_ii. */
+/* Returns the sum of a row's sizes in W, scaled such that W_ii = 1, times W_ii. The largest sum bounds eigenvalues. */
 static double bound_of_row(const struct Cones *cones, size_t row) {
   size_t n = cones->impulses->count;
   double sum = 0.0;
@@ -74,7 +74,7 @@ static void sweep_impulses(struct Cones *cones, enum Sweeps kind, int count, dou
   double *rate = work, *step = work + n;
   fill_sweep_steps(cones, kind, step);
   for (int k = 0; k < count; k++) {
-    for (size_t row = 0; row < n; row++) rate[row] = cones_rate_behind(cones, row);
+    for (size_t row = 0; row < n && kind == AT_ONCE; row++) rate[row] = cones_rate_behind(cones, row);
     for (size_t row = 0; row < n; row += cones_row_count(cones, row)) {
       size_t rows = cones_row_count(cones, row);
       for (size_t i = row; i < row + rows && kind == IN_TURN; i++) rate[i] = cones_rate_behind(cones, i);
@@ -110,7 +110,7 @@ double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials, doub
   double least = INFINITY;
   for (int trial = 0; trial < trials && !(least <= law_holds); trial++) {
     memcpy(cones->impulse, swept, bytes);
-    sweep_impulses(cones, kind, LAW_SWEEPS * trial, work);
+    if (trial > 0) sweep_impulses(cones, kind, LAW_SWEEPS * trial, work);
     memcpy(swept, cones->impulse, bytes);
     double miss = cones_relative_miss(cones, cone_newton(cones, work));
     if (miss < least) memcpy(best, cones->impulse, bytes);

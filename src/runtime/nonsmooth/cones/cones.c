@@ -4,8 +4,8 @@
 #include <math.h>
 
 /*
- * Of the largest rate: impulses with a larger residual solve nothing. Where there is no solution, impulses grow without
- * end, and the residual is small beside them, but not beside the rates.
+ * Largest residual of a solution, relative to the largest rate. If there is no solution, the search only enlarges the
+ * impulses. The residual then is small relative to the impulses, but remains of the size of the rates.
  */
 static const double unsolved_share = 0.1;
 

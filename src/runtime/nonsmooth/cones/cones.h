@@ -1,4 +1,4 @@
-/* Impulses of contacts and frictions: the problem of cone_impulses.c. */
+/* Impulses of contacts and frictions: the problem of cone_search.c. */
 #pragma once
 
 #include "nonsmooth/cones/impulses.h"

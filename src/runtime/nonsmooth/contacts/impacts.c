@@ -5,7 +5,7 @@
  *   p >= 0,   u+ + e u- >= 0,   p (u+ + e u-) = 0.
  *
  * The impulse of a friction is within the limit mu p. If it slides after the impact, the impulse is at the limit
- * and against the velocity; else it is what sticking requires. cone_impulses.c finds these impulses.
+ * and against the velocity; else it is what sticking requires. cone_search.c finds these impulses.
  *
  * Without restitution there is a solution, and it gains no energy. With e it may gain some (Kane's paradox); then all
  * restitutions are multiplied by the largest factor, found by bisection, that gains none. If no impulses are found, the
@@ -15,14 +15,11 @@
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "nonsmooth/cones/cone_impulses.h"
 #include "nonsmooth/contacts/contact_forces.h"
-#include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/tolerances.h"
 #include "nonsmooth/contacts/contact_impulses.h"
-#include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 
 /* Bisections of the factor of the restitutions, to 2^-52. */

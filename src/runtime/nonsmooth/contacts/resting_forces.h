@@ -37,7 +37,7 @@ double largest_free_acceleration(const struct RestingForces *resting);
 /*
  * Determines whether the solution exists and is unique in its accelerations. is_solved: the present forces are a
  * solution. If they last and are stable, they count as unique. Otherwise a solution is stored in found and found_force.
- * Groups of up to 12 contacts are enumerated up to a second solution. In larger groups cone_impulses.c finds one, and a
+ * Groups of up to 12 contacts are enumerated up to a second solution. In larger groups cone_search.c finds one, and a
  * sufficient condition decides on uniqueness.
  */
 enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved);

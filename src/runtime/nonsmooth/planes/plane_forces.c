@@ -1,6 +1,6 @@
 /*
  * Forces F of all contacts at rest, and of the frictions in planes at rest on them, at once. With the accelerations
- * a = free + W F they fulfil the conditions of an impact in cone_impulses.c, for accelerations in place of rates. A
+ * a = free + W F they fulfil the conditions of an impact in cone_search.c, for accelerations in place of rates. A
  * contact presses or opens, and a friction sticks or is at its limit against its acceleration. Faster frictions
  * slide along their velocities; their forces are proportional to those of the contacts, and are eliminated from W.
  * The solution sets the modes. This is tried at most once in an event resolution. It is needed where frictions switch

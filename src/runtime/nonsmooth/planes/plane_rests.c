@@ -1,7 +1,7 @@
 /*
  * Frictions in planes at rest. Those that are slow, and those that stick, are tried to stick. If one would need more
  * than its stiction, the forces T of all are found together. They and the accelerations a fulfil the law of
- * cone_impulses.c:
+ * cone_search.c:
  *
  *   |T| <= limit,  and  a = 0 or T = -limit a / |a|.
  *

@@ -24,6 +24,7 @@
 #include "evaluation/evaluate.h"
 #include "evaluation/prescribed_inputs.h"
 #include "evaluation/services.h"
+#include "support/next_random.h"
 
 /* Largest velocity at rest after a projection, by rounding, in units of the scales of velocities. */
 static const double projected_rest = 1e-10;
@@ -51,10 +52,9 @@ static bool has_kind(const struct SwitchTable *switches, enum RestingKind kind) 
   return has;
 }
 
-/* Returns a random number of magnitude 0.5 to 1, of either sign, by the generator of D. E. Knuth and H. W. Lewis. */
+/* Returns a random number of magnitude 0.5 to 1, of either sign. */
 static double random_number(struct Probe *probe) {
-  probe->seed = probe->seed * 1664525u + 1013904223u;
-  double number = (double)(probe->seed >> 8) / (double)(1u << 24);
+  double number = (double)next_random(&probe->seed) / (double)(1u << 24);
   return number < 0.5 ? number - 1.0 : number;
 }
 
