@@ -54,10 +54,6 @@ struct Resolution {
   int impacts, plastic_impacts, lifts;    /* plastic_impacts: those of all contacts that touch */
   double lost_speed;                      /* largest rate of a gap at which a contact came to rest in the event */
   double least_acceleration; /* smaller ones are rounding errors of the last solution for frictions at rest */
-  struct {
-    size_t friction;        /* the last one to switch, if no force changed since; else friction_count */
-    double mode, certainty; /* its mode before, and how many rounding errors supported leaving it */
-  } last;
 };
 
 /* Returns the status of messages if the motion cannot continue: an error at the start, else a discarded step. */
@@ -108,7 +104,7 @@ struct FrictionLaws {
   /* Sets the modes of frictions in planes from start values, as guess of struct EventLaws; NULL without any. */
   void (*guess)(struct Instance *instance);
   /*
-   * Finds the modes of contacts and frictions in planes at rest from all their forces at once (plane_forces.c), at most
+   * Finds the modes of contacts and frictions in planes at rest from all their forces at once (plane_rests.c), at most
    * once in an event resolution. False if there are none. NULL without frictions in planes.
    */
   bool (*resolve_together)(struct Resolution *resolution);
@@ -183,9 +179,6 @@ static inline double mode_of(const struct Resolution *resolution, size_t mode) {
 
 /* Sets a mode, and notes that something changed. */
 void resolution_set_mode(struct Resolution *resolution, size_t mode, double value);
-
-/* Sets a mode on which only results and indicators depend, so that the forces of the last round remain. */
-void resolution_set_observing_mode(struct Resolution *resolution, size_t mode, double value);
 
 /* Save and restore the modes, around trials of others. */
 void resolution_keep_modes(struct Resolution *resolution);

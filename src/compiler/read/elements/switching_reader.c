@@ -137,8 +137,6 @@ static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
     one.dimension = unit_of("m");
     append_contact(reader, one);
     if (!has_shape_friction(node)) continue;
-    struct Switches *switches = &reader->model->switches;
-    switches->contacts[switches->contact_count - 1].carried = new_mode(reader, one.name, "carried");
     declare_friction_of_contact(reader, &one);
   }
 }
@@ -157,9 +155,19 @@ void declare_contact(struct Reader *reader, xmlNodePtr node) {
               "between=\"...\" and=\"...\"");
 }
 
+/* Gives contacts a force beside their constraints if there are frictions in planes, whose forces depend on theirs. */
+static void declare_carried_forces(struct Reader *reader) {
+  struct Switches *switches = &reader->model->switches;
+  for (size_t i = 0; i < switches->contact_count && has_planes(switches); i++) {
+    struct Contact *contact = &switches->contacts[i];
+    contact->carried = new_mode(reader, reader->model->constraints.items[contact->constraint].name, "carried");
+  }
+}
+
 void number_modes(struct Reader *reader) {
   struct Graph *graph = reader->model->graph;
   struct Switches *switches = &reader->model->switches;
+  declare_carried_forces(reader);
   switches->first = reader->model->parameters.count;
   for (size_t i = 0; i < graph->symbol_count; i++)
     if (graph->symbols[i].kind == MODE) graph->symbols[i].index += (int)switches->first;
@@ -187,7 +195,11 @@ static void set_contact(struct Reader *reader, xmlNodePtr node, size_t number, N
                  "where it touches",
                  constraint->name);
   constraint->node = function(model->graph, GUARD, contact->mode, negate(model->graph, gap));
-  if (reader->diagnostics->errors == 0) check_constraint(reader, constraint);
+  if (reader->diagnostics->errors > 0) return;
+  check_constraint(reader, constraint);
+  if (contact->carried == ZERO) return;
+  const struct Gradient gradient = gradient_by_kinds(model->graph, gap, KIND(COORDINATE) | KIND(TIME));
+  add_virtual_work(model, contact->carried, &gradient);
 }
 
 static struct Friction *friction_of_contact(struct Reader *reader, const struct Contact *contact) {
@@ -204,8 +216,6 @@ static void set_friction_of_contact(struct Reader *reader, xmlNodePtr node, cons
   if (slip->along == ZERO && slip->across == ZERO)
     report_at(reader, node, "the shapes '%s' and '%s' cannot slide on each other; expected no friction",
               attribute(node, "between"), attribute(node, "and"));
-  const struct Gradient gradient = gradient_by_kinds(reader->model->graph, contact->gap, KIND(COORDINATE) | KIND(TIME));
-  add_virtual_work(reader->model, contact->carried, &gradient);
   friction[0].velocity = slip->along;
   friction[1].velocity = slip->across;
   friction->sliding = friction->sliding_back = multiply(reader->model->graph, grip->friction, pressing);

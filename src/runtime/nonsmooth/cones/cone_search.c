@@ -19,7 +19,7 @@
  * The search fails if the best residual is larger than law_roughly_holds and than the rounding error of the rates.
  * Friction that presses a contact together may leave no solution (Painleve's paradox).
  *
- * The same conditions hold between forces and accelerations at rest (plane_forces.c, resting_forces.c).
+ * The same conditions hold between forces and accelerations at rest (plane_rests.c, resting_forces.c).
  */
 #include "nonsmooth/cones/cone_search.h"
 

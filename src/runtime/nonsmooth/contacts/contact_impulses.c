@@ -70,6 +70,12 @@ void contact_carry(struct Resolution *resolution, size_t contact, double force) 
   if (metadata->carried != metadata->mode) resolution_set_mode(resolution, metadata->carried, force);
 }
 
+void contact_press(struct Resolution *resolution, size_t contact, double force) {
+  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
+  resolution_set_mode(resolution, metadata->mode, 0.0);
+  if (metadata->carried != metadata->mode) resolution_set_mode(resolution, metadata->carried, force);
+}
+
 void set_friction(struct Resolution *resolution, size_t friction, double mode) {
   const struct SwitchTable *switches = resolution->switches;
   size_t plane = plane_of(switches, friction);

@@ -32,6 +32,9 @@ void set_contact(struct Resolution *resolution, size_t contact, bool is_closed);
 /* Closes a contact that carries a force, to which its constraint adds what the load lacks. */
 void contact_carry(struct Resolution *resolution, size_t contact, double force);
 
+/* Opens a contact and lets a force press on it. */
+void contact_press(struct Resolution *resolution, size_t contact, double force);
+
 /* Returns the force that a contact carries beside its constraint. */
 static inline double carried_force(const struct Resolution *resolution, size_t contact) {
   const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];

@@ -7,7 +7,7 @@
  *
  * Each round makes one change, or one to each of several frictions. A friction may switch more than TOGETHER_LIMIT
  * times, or no forces may be found while the contacts stay closed. Then the forces of contacts and frictions are solved
- * for together (plane_forces.c), at most once in an event resolution. Beyond FRICTION_FLIP_LIMIT switches the motion
+ * for together , at most once in an event resolution. Beyond FRICTION_FLIP_LIMIT switches the motion
  * ends with a message.
  */
 #include <math.h>
@@ -17,7 +17,6 @@
 #include "nonsmooth/contacts/frictions.h"
 #include "nonsmooth/contacts/jams.h"
 #include "evaluation/evaluate.h"
-#include "nonsmooth/planes/plane_forces.h"
 #include "nonsmooth/planes/plane_rests.h"
 
 /*
@@ -121,13 +120,14 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
   }
   if (*again || !resolves) return NULL;
   *again = true;
-  return plane_rests_find(resolution) || plane_forces_resolve(resolution) ? NULL : reject_directions(resolution);
+  return plane_rests_find(resolution) || plane_rests_find_with_contacts(resolution) ? NULL
+                                                                                    : reject_directions(resolution);
 }
 
 static const char *act(struct Resolution *resolution, bool *again) {
   const char *problem = frictions_act(resolution, again);
   bool goes_round = find_flipping(resolution, TOGETHER_LIMIT) < resolution->switches->friction_count;
-  if (problem == NULL && !*again && goes_round && plane_forces_resolve(resolution)) *again = true;
+  if (problem == NULL && !*again && goes_round && plane_rests_find_with_contacts(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
   size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
   if (problem == NULL && flipping < resolution->switches->friction_count)
@@ -174,6 +174,6 @@ const struct FrictionLaws plane_friction_laws = {.act = act,
                                                  .resolve_jam = jams_resolve,
                                                  .explain_jam = frictions_explain_jam,
                                                  .guess = guess,
-                                                 .resolve_together = plane_forces_resolve,
+                                                 .resolve_together = plane_rests_find_with_contacts,
                                                  .slip_where_stopped = let_stopped_slip,
                                                  .set_plane = set_plane};

@@ -14,3 +14,9 @@ bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneSt
  * with which all conditions hold. False, without a message, if none are found, or accelerations do not exist.
  */
 bool plane_rests_find(struct Resolution *resolution);
+
+/*
+ * The same with the forces of all contacts at rest, which may open or close. False also on further calls in an event
+ * resolution.
+ */
+bool plane_rests_find_with_contacts(struct Resolution *resolution);

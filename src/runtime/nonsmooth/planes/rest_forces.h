@@ -1,0 +1,64 @@
+/* Forces of frictions in planes at rest, and of the contacts that take part, all at once. */
+#pragma once
+
+#include "nonsmooth/cones/impulses.h"
+#include "nonsmooth/planes/plane_state.h"
+
+/* Relative to the largest stiction: forces that exceed a limit by less are at the limit. */
+static const double share_at_limit = 1e-9;
+
+/*
+ * Values of resolution->takes_part for a friction at rest. IS_OVERCOME: at its limit it slips. IS_SLOW: it slid, and
+ * continues with its velocity if it does not stick.
+ */
+enum { IS_AT_REST = 1, IS_OVERCOME = 2, IS_SLOW = 3 };
+
+/* Values of resolution->takes_part for a contact whose force is unknown. */
+enum { WAS_CLOSED = 1, WAS_OPEN = 2 };
+
+/*
+ * The unknown forces: a row for each contact, two for each friction. The arrays of frictions have an element, or a row
+ * of n, for each of their rows.
+ */
+struct RestForces {
+  struct Resolution *resolution;
+  struct ContactImpulses impulses;   /* derivatives of a; the limits, which are kinetic ones if the friction slips */
+  size_t n;                          /* number of rows */
+  double pressure;                   /* force of each contact, in N, around which the functions are read */
+  double *free;                      /* a without forces */
+  double *force, *behind;            /* the forces, and a with them */
+  double *stiction, *given_stiction; /* derivatives of the stiction, and stiction without forces */
+  double *kinetic, *given_kinetic;   /* the same for the kinetic friction */
+  double *slips;                     /* 1 if the friction slips: its limit is the kinetic friction */
+  double none;                       /* accelerations that count as 0 */
+};
+
+/* Returns the element of takes_part of a friction. */
+static inline double *part_of_plane(const struct Resolution *resolution, const struct PlaneState *state) {
+  return &resolution->takes_part[resolution->switches->contact_count + state->metadata->along];
+}
+
+/* Returns the state of the friction of a row. */
+static inline struct PlaneState state_of_row(const struct RestForces *forces, size_t row) {
+  const struct Resolution *resolution = forces->resolution;
+  return plane_state(resolution, plane_of(resolution->switches, forces->impulses.member[row]));
+}
+
+/* True if the friction of a row slips by the solution. */
+static inline bool rest_slips(const struct RestForces *forces, size_t row) {
+  return forces->slips[row - forces->impulses.contact_count] != 0.0;
+}
+
+/* Returns the largest stiction of all frictions in planes. */
+double largest_stiction(const struct Resolution *resolution);
+
+/*
+ * Finds the forces of the contacts that take part, and of the frictions that do and have kinetic friction. The others
+ * keep their modes. False, and nothing is allocated, if there are none, or accelerations or memory are missing. Modes
+ * change to those with which the functions were read.
+ */
+bool rest_forces_find(struct RestForces *forces);
+void rest_forces_free(const struct RestForces *forces);
+
+/* Returns the kinetic friction of a row with the forces that were found. */
+double rest_forces_kinetic(const struct RestForces *forces, size_t row);
