@@ -27,7 +27,7 @@ static bool set_pieces(struct Resolution *resolution, const struct Point *point)
     double sign = indicator[i] > 0.0 ? 1.0 : -1.0;
     bool has_sign = fabs(indicator[i]) > 0.0 && !branch->is_last_sign;
     if (!has_sign || sign == mode_of(resolution, branch->mode)) continue;
-    resolution_set_observing_mode(resolution, branch->mode, sign);
+    resolution_set_mode(resolution, branch->mode, sign);
     changes = true;
   }
   return changes && evaluate_prepare(resolution->instance) == STATUS_DONE;

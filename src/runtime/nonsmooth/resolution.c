@@ -56,7 +56,7 @@ size_t resolution_work_count(void) {
 
 struct Resolution resolution_of(struct Instance *instance) {
   const struct SwitchTable *switches = lagrangian.switches;
-  struct Resolution resolution = {.instance = instance, .switches = switches, .last = {switches->friction_count, 0, 0}};
+  struct Resolution resolution = {.instance = instance, .switches = switches};
   lay_out_resolution(&resolution, instance->switching_work);
   memset(resolution.largest, 0, (size_t)(resolution.value - resolution.largest) * sizeof(double));
   return resolution;
@@ -187,15 +187,10 @@ double resolution_error_bound(const struct Resolution *resolution, size_t slot, 
   return resolution->error_bound[slot] + (isfinite(change) ? change : 0.0);
 }
 
-void resolution_set_observing_mode(struct Resolution *resolution, size_t mode, double value) {
+void resolution_set_mode(struct Resolution *resolution, size_t mode, double value) {
   resolution->instance->parameter[mode] = value;
   resolution->instance->parameter_constants_are_stale = true;
   resolution->changed = true;
-}
-
-void resolution_set_mode(struct Resolution *resolution, size_t mode, double value) {
-  resolution_set_observing_mode(resolution, mode, value);
-  resolution->last.friction = resolution->switches->friction_count;
 }
 
 static double *modes_of(const struct Resolution *resolution) {

@@ -68,7 +68,7 @@ static const char *find_resting_velocities(struct Resolution *resolution, bool *
     /* No function distinguishes velocities that accelerate from others that move. */
     resolution->instance->parameter[mode] = resolution->moves[i];
     if (rests == rested) continue;
-    resolution_set_observing_mode(resolution, mode, resolution->moves[i]);
+    resolution_set_mode(resolution, mode, resolution->moves[i]);
     if (rests) resolution->has_rested = true;
     else resolution->has_left_rest = true;
     *again = true;

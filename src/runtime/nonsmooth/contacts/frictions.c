@@ -164,23 +164,6 @@ static double friction_mode(const struct Resolution *resolution, const struct Fr
   return state->mode == 0.0 ? mode_from_rest(resolution, state) : mode_from_sliding(resolution, state);
 }
 
-/* Returns by how many rounding error bounds a friction leaves its mode. */
-static double certainty_of(const struct FrictionState *state) {
-  if (state->is_moving) return INFINITY;
-  double excess = state->force - state->stiction;
-  return state->mode == 0.0 ? excess / state->error_bound_of_force : fabs(state->rate) / state->error_bound_of_rate;
-}
-
-/*
- * True if the friction would return to the mode that it has just left, by a larger margin. A friction whose
- * velocity a contact constrains slides without moving if its share of their common load would exceed its limit. Its
- * rate is then a rounding error.
- */
-static bool would_go_back(const struct Resolution *resolution, size_t friction, double mode, double certainty) {
-  return resolution->last.friction == friction && resolution->last.mode == mode &&
-         resolution->last.certainty > certainty;
-}
-
 const char *frictions_report_inconsistent(const struct Resolution *resolution, size_t friction) {
   const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
   bool is_weaker =
@@ -211,7 +194,7 @@ static void switch_friction(struct Resolution *resolution, size_t friction, doub
   resolution_set_mode(resolution, metadata->mode, mode);
   if (!metadata->has_static_limit || mode == 0.0) return;
   if (!frictions_find_constrained(resolution, friction, &is_constrained)) return; /* the next evaluation says why */
-  resolution_set_observing_mode(resolution, metadata->reported, is_constrained ? 0.0 : mode);
+  resolution_set_mode(resolution, metadata->reported, is_constrained ? 0.0 : mode);
 }
 
 /*
@@ -240,8 +223,6 @@ const char *frictions_act(struct Resolution *resolution, bool *switched) {
     struct FrictionState state = friction_state(resolution, i);
     double mode = friction_mode(resolution, &state);
     if (mode == state.mode) continue;
-    double certainty = certainty_of(&state);
-    if (would_go_back(resolution, i, mode, certainty)) continue;
     if (++resolution->flips[friction_indicator(resolution->switches, i)] > FRICTION_FLIP_LIMIT) {
       *switched = jams_resolve(resolution);
       return *switched                         ? NULL
@@ -251,9 +232,6 @@ const char *frictions_act(struct Resolution *resolution, bool *switched) {
     *switched = state.mode == 0.0 && stick_again(resolution);
     if (*switched) return NULL;
     switch_friction(resolution, i, mode);
-    resolution->last.friction = i;
-    resolution->last.mode = state.mode;
-    resolution->last.certainty = certainty;
     *switched = true;
   }
   return NULL;
@@ -328,7 +306,7 @@ bool frictions_report(struct Resolution *resolution, bool *again) {
     if (is_planar) i++; /* the friction across has the same mode */
     if (is_constrained) mode = 0.0;
     if (mode == mode_of(resolution, metadata->reported)) continue;
-    resolution_set_observing_mode(resolution, metadata->reported, mode);
+    resolution_set_mode(resolution, metadata->reported, mode);
     *again = true;
   }
   return true;
