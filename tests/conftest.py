@@ -55,7 +55,7 @@ def seconds_of_files(terminalreporter):
     for reports in terminalreporter.stats.values():
         for report in reports:
             if isinstance(report, pytest.TestReport):
-                seconds[report.nodeid.partition("::")[0]] += report.processor_seconds
+                seconds[report.nodeid.partition("::")[0]] += getattr(report, "processor_seconds", 0.0)
     return seconds.most_common()
 
 
