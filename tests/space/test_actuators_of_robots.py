@@ -23,14 +23,28 @@ FILE = f"""<mujoco model="m"><option gravity="0 0 0"/><default><joint frictionlo
 # A body of 2 kg is welded to one that inputs move.
 LED = f"""<mujoco model="m"><worldbody><body name="goal" mocap="true" pos="0.3 0 0" euler="0 0 90"><geom size="1"/></body><body name="b">{BOX}</body></worldbody>
 <equality><weld name="tie" body1="goal" body2="b"/></equality></mujoco>"""
+# A slide of 2 kg carries another of 2 kg, and a mass of 2 kg hangs on a spatial tendon.
+CARRIED = f"""<mujoco model="m"><option gravity="0 0 0"/><default><default class="firm"><position kv="3"/><default class="z"><position dampratio="0.5"/></default></default></default>
+<worldbody><site name="post" pos="0 3 4"/>
+<body name="base"><joint name="base" type="slide" axis="1 0 0" armature="0.5"/>{BOX}<body name="top"><joint name="top" type="slide" axis="1 0 0"/>{BOX}</body></body>
+<body name="hung"><joint name="hung" type="slide" axis="0 0 1"/>{BOX}<site name="ring"/></body></worldbody>
+<tendon><fixed name="both"><joint joint="base" coef="3"/><joint joint="top" coef="1"/></fixed><spatial name="rope"><site site="post"/><site site="ring"/></spatial></tendon>
+<actuator>
+  <position name="one" joint="top" kp="8" dampratio="0.7" gear="-2"/>
+  <position name="inner" class="z" joint="top" kp="8"/>
+  <position name="own" class="z" joint="top" kp="8" kv="0.1"/>
+  <intvelocity name="sum" tendon="both" kp="8" dampratio="1" actrange="-1 1"/>
+  <general name="pull" tendon="rope" gainprm="8" biastype="affine" biasprm="0 -8 1.5" gear="0.5"/>
+</actuator></mujoco>"""
 SYSTEMS = {"Driven": "", "Rests": 'friction="sticks"', "Key": 'keyframe="full"'}
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
     texts = {name: f'<system name="{name}"><include file="m.xml" as="m" {word}/></system>' for name, word in SYSTEMS.items()}
+    texts["Carried"] = '<system name="Carried"><include file="m.xml" as="m"/></system>'
     texts["Led"] = '<system name="Led"><include file="led.xml" as="m" mocap="inputs" base="floating"/></system>'
-    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED})
+    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED})
 
 
 def test_a_filter(open_fmu):
@@ -92,3 +106,14 @@ def test_inputs_move_a_mocap_body(open_fmu):
     assert instance.get("der(m.b_x_velocity)", "der(m.b_y_velocity)") == pytest.approx(acceleration, abs=1e-9)
     force = instance.get("m.tie_loop.forceX", "m.tie_loop.forceY", "m.tie_loop.forceZ")
     assert math.hypot(*force) == pytest.approx(2 * math.hypot(*acceleration, 9.81), rel=1e-9)
+
+
+def test_damping_ratios(open_fmu):
+    """
+    The damping is 2 z sqrt(k J) with 1/J = m^T M^-1 m. M = [[4.5, 2], [2, 2]] of base and top has the inverse [[2, -2], [-2, 4.5]]/5. So 1/J is
+    4.5/5 for top times the gear squared, and (18 - 12 + 4.5)/5 for 3 base + top. The rope's length changes by 4/5 of the slide of 2 kg.
+    """
+    instance = open_fmu("Carried").initialize({})
+    inverses = {"one": (0.7, 4 * 0.9), "inner": (0.5, 0.9), "sum": (1, 2.1), "pull": (1.5, 0.5**2 * 0.8**2 / 2)}
+    expected = {name: 2 * ratio * math.sqrt(8 / inverse) for name, (ratio, inverse) in inverses.items()} | {"own": 0.1}
+    assert instance.get(*(f"m.{name}_control_damping" for name in expected)) == pytest.approx(list(expected.values()), rel=1e-14)

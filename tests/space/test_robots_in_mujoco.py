@@ -281,6 +281,31 @@ TIMED = """\
 </mujoco>
 """
 
+# Damping ratios of servomotors, at joints and along tendons of each kind.
+DAMPED = """\
+<mujoco model="damped">
+  <compiler angle="radian"/>
+  <default><default class="y"><position kv="3"/><default class="z"><position dampratio="0.4"/></default></default></default>
+  <worldbody>
+    <site name="post" pos="1 0 0"/>
+    <body name="base" pos="0 0 1" euler="0.3 0.2 0.1"><joint name="j" axis="0 1 0.3" ref="0.2" armature="0.1" pos="0.1 0 0.2"/><geom size="0.1" mass="1" pos="0.3 0 0"/>
+      <body name="arm" pos="0.5 0 0"><joint name="h" axis="0 1 0"/><joint name="s" type="slide" axis="1 0 0.2" ref="0.3"/><geom type="box" size="0.1 0.2 0.3" mass="1" pos="0 0 0.3"/><site name="a" pos="0.1 0.2 0.3"/></body>
+      <body name="head" pos="0 0 0.4"><joint name="ball" type="ball" pos="0 0.1 0" armature="0.02"/><geom type="box" size="0.1 0.2 0.3" pos="0.2 0 0"/><site name="b" pos="0.2 0.1 0.2"/></body>
+    </body>
+    <body name="drone" pos="1 2 3" euler="1 2 3"><freejoint/><geom type="box" size="0.1 0.2 0.1" pos="0.1 0 0"/><site name="c" pos="0.2 0.1 0.2"/></body>
+  </worldbody>
+  <tendon><fixed name="f"><joint joint="j" coef="2"/><joint joint="s" coef="-0.5"/></fixed>
+  <spatial name="p"><site site="post"/><site site="a"/><site site="b"/><site site="c"/></spatial></tendon>
+  <actuator>
+    <position name="one" class="y" joint="j" kp="10" dampratio="0.7" gear="-2"/>
+    <position name="two" class="z" joint="s" kp="5"/>
+    <position name="three" class="z" joint="s" kp="5" kv="0.1"/>
+    <intvelocity name="four" tendon="f" kp="3" dampratio="1" actrange="-1 1"/>
+    <general name="five" tendon="p" gainprm="4" biastype="affine" biasprm="0.1 -4 0.6" gear="0.5"/>
+      </actuator>
+</mujoco>
+"""
+
 # Between two lengths the tendon's spring is slack.
 SLACK = """\
 <mujoco model="slack">
@@ -585,6 +610,16 @@ def test_hand(open_fmu):
     text = hand.text()
     build_systems("mujoco-hand", {"Shadow": '<system name="Shadow"><include file="hand.xml" as="r"/></system>'}, files={"Shadow/hand.xml": text})
     check_accelerations("Shadow", text, open_fmu("Shadow", kind=FMU2Model), 1e-10)
+
+
+def test_damping_ratios(tmp_path):
+    """Each damping is that of MuJoCo's compiled model."""
+    (tmp_path / "damped.xml").write_text(DAMPED)
+    assert fmu.lagc("damped.xml", "-o", "out", cwd=tmp_path).returncode == 0
+    model, text = mujoco.MjModel.from_xml_string(DAMPED), (tmp_path / "out" / "modelDescription.xml").read_text()
+    names = [model.actuator(i).name for i in range(model.nu)]
+    found = [float(re.search(rf'name="{name}_control_damping".*?start="(.*?)"', text, re.DOTALL)[1]) for name in names]
+    assert found == pytest.approx(-model.actuator_biasprm[:, 2], rel=1e-13)
 
 
 def test_slack_tendon(open_fmu):

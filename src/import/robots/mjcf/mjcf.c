@@ -320,6 +320,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);
   mjcf_set_springs(&mjcf);
   for_each(&mjcf, "actuator", true, mjcf_read_actuator);
+  mjcf_set_dampings(&mjcf);
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
   if (diagnostics->errors == errors) {

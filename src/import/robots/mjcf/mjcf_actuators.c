@@ -18,10 +18,13 @@ static void read_motor(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actu
   actuator->gain[0] = 1;
 }
 
+/* Reads a servomotor. A positive bias by velocity is a damping ratio until mjcf_set_dampings() replaces it. */
 static void read_position(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
   actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "kp", 1);
   actuator->bias[1] = -actuator->gain[0];
-  actuator->bias[2] = -mjcf_number_not_negative(mjcf, node, "kv", 0);
+  double damping = mjcf_number_not_negative(mjcf, node, "kv", 0),
+         ratio = mjcf_number_not_negative(mjcf, node, "dampratio", 0);
+  actuator->bias[2] = mjcf_prevails(mjcf, node, "dampratio", "kv") ? ratio : -damping;
   set_filter(actuator, mjcf_number_not_negative(mjcf, node, "timeconst", 0));
 }
 
@@ -80,21 +83,6 @@ static size_t kind_of(xmlNodePtr node) {
   size_t kind = 0;
   while (kind < KINDS && !is_element(node, kinds[kind].name)) kind++;
   return kind;
-}
-
-/* Reports ratios to critical damping, which MuJoCo computes from the inertia of the compiled model. */
-static void reject_ratio(struct Mjcf *mjcf, xmlNodePtr node, const struct Actuator *actuator) {
-  double ratio = is_element(node, "position") ? mjcf_number(mjcf, node, "dampratio", 0) : 0;
-  if (ratio != 0)
-    mjcf_error(mjcf, node,
-               "dampratio=\"%g\" of <position> is not read; expected kv, the damping itself: -actuator_biasprm[2] of "
-               "MuJoCo's compiled model",
-               ratio);
-  if (actuator->bias[2] > 0 && actuator->gain[0] == -actuator->bias[1])
-    mjcf_error(mjcf, node,
-               "the third number of biasprm of <%s> is above 0, a ratio of damping, which is not read; expected the "
-               "damping itself with its sign: actuator_biasprm[2] of MuJoCo's compiled model",
-               (const char *)node->name);
 }
 
 /* Returns the attribute that names the joint of an actuator. */
@@ -210,7 +198,6 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_check_laws(mjcf, node);
   kinds[kind].read(mjcf, node, &actuator);
   if (actuator.wrench != NULL) check_wrench(mjcf, node, &actuator);
-  reject_ratio(mjcf, node, &actuator);
   mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
   mjcf_limits(mjcf, node, "actrange", "actlimited", actuator.activation);
   if (is_element(node, "position")) inherit_range(mjcf, node, tendon, "ctrl", actuator.control);

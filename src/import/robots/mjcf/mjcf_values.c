@@ -70,12 +70,26 @@ static bool is_default_of(xmlNodePtr node, xmlNodePtr element, const char *name)
   return is_element(node, is_tendon ? "tendon" : (const char *)element->name);
 }
 
-const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
-  if (has_attribute(node, name)) return attribute(node, name);
+/* Returns the element, or of the <default>s for it the innermost, that has one of two attributes; NULL for none. */
+static xmlNodePtr holder_of(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *other) {
+  if (has_attribute(node, name) || has_attribute(node, other)) return node;
   for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class))
     for (xmlNodePtr found = class->last; found != NULL; found = found->prev)
-      if (is_default_of(found, node, name) && has_attribute(found, name)) return attribute(found, name);
+      if (is_default_of(found, node, name) && (has_attribute(found, name) || has_attribute(found, other))) return found;
   return NULL;
+}
+
+const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name) {
+  xmlNodePtr holder = holder_of(mjcf, node, name, name);
+  return holder != NULL ? attribute(holder, name) : NULL;
+}
+
+bool mjcf_prevails(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *other) {
+  xmlNodePtr holder = holder_of(mjcf, node, name, other);
+  if (holder == NULL || !has_attribute(holder, name)) return false;
+  if (has_attribute(holder, other))
+    mjcf_error(mjcf, holder, "<%s> has %s and %s; expected one of them", (const char *)node->name, name, other);
+  return true;
 }
 
 static bool defines_law(xmlNodePtr node) {

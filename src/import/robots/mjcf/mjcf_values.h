@@ -59,6 +59,12 @@ struct Mjcf {
 /* Returns an attribute of the element or of its classes, innermost first; NULL if none has it. */
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
 
+/*
+ * True if the first of two attributes prevails: the element has it, or of its classes with either one the innermost has
+ * it. Reports both in one place.
+ */
+bool mjcf_prevails(struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *other);
+
 /* Reports an actuator whose gain and bias MuJoCo would take from <default>s of another kind. */
 void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node);
 
@@ -117,6 +123,9 @@ const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char 
 
 /* <actuator>: forces on joints and tendons that depend on a control; after all joints and tendons. */
 MjcfReader mjcf_read_actuator;
+
+/* Replaces the damping ratios of actuators by their dampings, once all bodies and actuators have been read. */
+void mjcf_set_dampings(struct Mjcf *mjcf);
 
 /*
  * <equality>: joints and tendons that follow others, and kinematic loops; after all bodies, sites and joints. Soft in
