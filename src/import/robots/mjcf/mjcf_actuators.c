@@ -211,6 +211,10 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
     memset(actuator.bias, 0, sizeof actuator.bias);
     actuator.force[0] = actuator.force[1] = NAN;
   }
-  mjcf_reject(mjcf, node, "actdim delay damping armature refsite");
+  mjcf_reject(mjcf, node, "actdim delay damping armature");
+  if (mjcf_text(mjcf, node, "refsite") != NULL)
+    mjcf_error(mjcf, node,
+               "refsite=\"%.60s\" of <%s> is not read; expected a <spatial> tendon from site to site, or a <joint>",
+               mjcf_text(mjcf, node, "refsite"), (const char *)node->name);
   APPEND(robot->actuators, robot->actuator_count, actuator);
 }
