@@ -71,6 +71,41 @@ def test_mistakes_in_included_files(tmp_path):
     assert result.returncode == 1 and re.search(r"^broken\.xml:2: .*\(included on line 15 of arm\.xml\)", result.stderr, re.MULTILINE), result.stderr
 
 
+# A hand in another file, whose tendon refers to two bodies.
+HAND = """<mujoco>
+<worldbody>
+<body name="palm"><joint name="turn" axis="0 1 0" range="1 0"/><geom size="0.1"/><body name="finger"><joint name="bend"/><geom size="0.1"/></body></body>
+</worldbody>
+<tendon><fixed name="both"><joint joint="turn" coef="1"/><joint joint="bend" coef="1"/></fixed></tendon>
+</mujoco>"""
+ATTACHING = """<mujoco model="arm"><compiler conflict="{conflict}"/>
+<asset><model name="hand" file="{file}"/></asset>
+<worldbody><body name="arm"><joint name="{joint}"/><geom size="0.1"/>
+<attach model="hand" body="{body}" prefix="h_"/>
+</body></worldbody></mujoco>"""
+BAD_ATTACHMENTS = [
+    ({"body": "fingr"}, "arm.xml:4", "there is no body 'fingr' in the <model> 'hand'; did you mean 'finger'?"),
+    ({}, "hand.xml:3", "range of <joint> is from 1 to 0; expected the lower one first (attached on line 4 of arm.xml)"),
+    ({"file": "arm.xml", "body": ""}, "arm.xml:2", "more than 8 files attach each other in a row, or more than 1000 in all; expected fewer (attached on line 4 of arm.xml)"),
+    ({"file": "system.xml"}, "system.xml:1", "<system> is the first element of a <model>; expected <mujoco> (attached on line 4 of arm.xml)"),
+    (
+        {"joint": "turn", "body": "finger"},
+        "arm.xml:4",
+        "a <fixed> of the <model> 'hand' refers to the body 'finger' and to the joint 'turn' outside of it, a name in this file too; expected another name",
+    ),
+    ({"conflict": "merge"}, "arm.xml:1", 'conflict="merge" of <compiler> is not read; expected the <option>s in the robot\'s file'),
+]
+
+
+@pytest.mark.parametrize("change, place, message", BAD_ATTACHMENTS)
+def test_bad_attachments(change, place, message, tmp_path):
+    (tmp_path / "hand.xml").write_text(HAND)
+    (tmp_path / "arm.xml").write_text(ATTACHING.format(**({"file": "hand.xml", "body": "palm", "joint": "elbow", "conflict": "warning"} | change)))
+    (tmp_path / "system.xml").write_text('<system name="S"><include file="arm.xml" as="arm"/></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1 and re.search(rf"^{place}: {re.escape(message)}", result.stderr, re.MULTILINE), result.stderr
+
+
 KEYS = '<keyframe><key name="home" qpos="0.1 0.2"/><key name="short" qpos="1"/><key name="odd" qvel="0 x"/><key name="free" ctrl="1 2"/></keyframe>'
 BAD_KEYS = [
     ("hom", 1, "there is no <key> 'hom'; did you mean 'home'?"),

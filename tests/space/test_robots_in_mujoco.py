@@ -8,6 +8,7 @@ import pytest
 from fmpy.fmi2 import FMU2Model
 from scipy.spatial.transform import Rotation
 
+import attached_arms
 import fmu
 from fmu import build_systems
 from numerics.space import hand
@@ -620,6 +621,20 @@ def test_damping_ratios(tmp_path):
     names = [model.actuator(i).name for i in range(model.nu)]
     found = [float(re.search(rf'name="{name}_control_damping".*?start="(.*?)"', text, re.DOTALL)[1]) for name in names]
     assert found == pytest.approx(-model.actuator_biasprm[:, 2], rel=1e-13)
+
+
+def test_attached_files(tmp_path):
+    """The robot has the masses, the order of inputs and the placements of MuJoCo's model."""
+    for name, text in attached_arms.TEXTS.items():
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text)
+    model, flat = (mujoco.MjModel.from_xml_path(str(tmp_path / name)) for name in ("top.xml", "flat.xml"))
+    for field in ("body_mass", "body_pos", "body_quat", "body_inertia", "qpos0", "jnt_axis", "jnt_pos", "dof_damping", "dof_armature", "dof_frictionloss"):
+        assert getattr(flat, field) == pytest.approx(getattr(model, field), abs=1e-12), field
+    for kind, count in (("body", model.nbody), ("joint", model.njnt), ("actuator", model.nu), ("tendon", model.ntendon)):
+        assert [getattr(flat, kind)(i).name for i in range(count)] == [getattr(model, kind)(i).name for i in range(count)]
+    assert flat.actuator_trnid == pytest.approx(model.actuator_trnid) and flat.actuator_gear == pytest.approx(model.actuator_gear)
+    assert flat.wrap_prm == pytest.approx(model.wrap_prm) and flat.eq_obj1id == pytest.approx(model.eq_obj1id)
 
 
 def test_slack_tendon(open_fmu):

@@ -85,6 +85,13 @@ struct Matrix3 product(const struct Matrix3 *first, const struct Matrix3 *second
   return both;
 }
 
+struct Matrix3 rotation_of_quaternion(const double q[4]) {
+  double length = hypot(hypot(q[1], q[2]), q[3]);
+  if (length == 0) return no_displacement.rotation;
+  double axis[3] = {q[1] / length, q[2] / length, q[3] / length};
+  return rotation_about(axis, 2 * atan2(length, q[0]));
+}
+
 struct Matrix3 rotation_of_euler(const char *sequence, const double angles[3]) {
   struct Matrix3 rotation = no_displacement.rotation;
   for (int i = 0; i < 3; i++) {

@@ -31,6 +31,9 @@ struct Placement placement_of(const double translation[3], const double angles[3
 /* Returns the rotation by an angle about a unit vector (Rodrigues' formula). */
 struct Matrix3 rotation_about(const double axis[3], double angle);
 
+/* Returns the rotation by a quaternion of any nonzero norm, the real part first. */
+struct Matrix3 rotation_of_quaternion(const double q[4]);
+
 /*
  * Returns the rotation by Euler angles in a sequence such as "xyz". Capital letters rotate about the axes of the outer
  * frame (extrinsic), small ones about the rotated axes (intrinsic).

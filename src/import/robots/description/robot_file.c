@@ -139,6 +139,7 @@ bool condition_holds(const struct RobotOptions *options, enum Condition conditio
 static void check_attribute(struct RobotFile *file, xmlNodePtr node, const char *name, const struct Attributes *table) {
   const char *element = (const char *)node->name, *remedy = NULL;
   bool is_known_element = false;
+  if (*name == '-') return; /* a note of the reader, see mjcf_attachments.c */
   for (const struct Attributes *row = table; row->elements != NULL; row++) {
     if (!is_among(row->elements, element)) continue;
     is_known_element = true;

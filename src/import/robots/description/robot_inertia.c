@@ -5,18 +5,17 @@
  *
  * R. Featherstone, Rigid Body Dynamics Algorithms, 2008, chapter 6.
  */
-#include "robots/mjcf/mjcf_inertia.h"
+#include "robots/description/robot_inertia.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "robots/mjcf/mjcf_values.h"
 
 /* Velocities of a free joint. */
 enum { MOST_OF_A_JOINT = 6 };
 
-size_t mjcf_link_index(const struct Robot *robot, const char *name) {
+size_t robot_link_index(const struct Robot *robot, const char *name) {
   size_t i = 0;
   while (i < robot->link_count && strcmp(robot->links[i]->name, name) != 0) i++;
   return i;
@@ -69,7 +68,7 @@ static struct Velocities velocities_of(const struct Robot *robot) {
   all.placements[0] = no_displacement;
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct RobotJoint *joint = robot->joints[i];
-    size_t parent = mjcf_link_index(robot, joint->parent_name), child = mjcf_link_index(robot, joint->child_name);
+    size_t parent = robot_link_index(robot, joint->parent_name), child = robot_link_index(robot, joint->child_name);
     if (parent == robot->link_count || child == robot->link_count) continue; /* reported elsewhere */
     struct Placement placement = placement_at_start(joint);
     all.placements[child] = placement_within(&all.placements[parent], &placement);
@@ -80,7 +79,7 @@ static struct Velocities velocities_of(const struct Robot *robot) {
 }
 
 /* The velocity is axis x (point - its own) for a rotation, else the axis. */
-void mjcf_velocity_at(const struct Velocity *velocity, const double point[3], double result[3]) {
+void robot_velocity_at(const struct Velocity *velocity, const double point[3], double result[3]) {
   for (int i = 0; i < 3; i++) {
     int j = (i + 1) % 3, k = (i + 2) % 3;
     result[i] = velocity->rotates ? velocity->axis[j] * (point[k] - velocity->point[k]) -
@@ -99,8 +98,8 @@ static void add_body(const struct Velocities *all, const struct RigidBody *body,
     for (size_t j = i; j > 0; j = all->items[j - 1].previous) {
       const struct Velocity *one = &all->items[i - 1], *other = &all->items[j - 1];
       double v[3], w[3], spin[3];
-      mjcf_velocity_at(one, body->center, v);
-      mjcf_velocity_at(other, body->center, w);
+      robot_velocity_at(one, body->center, v);
+      robot_velocity_at(other, body->center, w);
       rotation_apply(&body->tensor, other->axis, spin);
       mass[(i - 1) * all->count + j - 1] +=
           body->mass * dot(v, w) + (one->rotates && other->rotates ? dot(one->axis, spin) : 0);
@@ -128,7 +127,7 @@ static void factorize(double *matrix, size_t n) {
     }
 }
 
-double mjcf_reflected_inertia(const struct Inertia *inertia, const double *moments) {
+double robot_reflected_inertia(const struct Inertia *inertia, const double *moments) {
   size_t n = inertia->all.count;
   double *x = allocate(n, sizeof *x), sum = 0;
   for (size_t i = 0; i < n; i++) {
@@ -141,12 +140,12 @@ double mjcf_reflected_inertia(const struct Inertia *inertia, const double *momen
   return 1 / sum;
 }
 
-bool mjcf_find_inertia(struct Mjcf *mjcf, struct Inertia *inertia, long line, const char *what, const char *remedy) {
-  const struct Robot *robot = mjcf->file.robot;
+bool robot_find_inertia(const struct Robot *robot, struct Inertia *inertia, struct Diagnostics *diagnostics, long line,
+                        const char *what, const char *remedy) {
   for (size_t i = 0; i < robot->tendon_count; i++) {
     if (robot->tendons[i].armature == 0) continue;
-    report_error(mjcf->file.diagnostics, line, "%s is beside the armature of the tendon '%s'; expected %s in its place",
-                 what, robot->tendons[i].name, remedy);
+    report_error(diagnostics, line, "%s is beside the armature of the tendon '%s'; expected %s in its place", what,
+                 robot->tendons[i].name, remedy);
     return false;
   }
   if (inertia->factor != NULL) return true;

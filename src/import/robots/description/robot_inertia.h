@@ -4,7 +4,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "robots/mjcf/mjcf_values.h"
+#include "base/diagnostics.h"
+#include "robots/description/robot.h"
 
 /* One velocity of a joint in the world. A rotation is about an axis through the point. */
 struct Velocity {
@@ -23,12 +24,12 @@ struct Velocities {
 };
 
 /* Returns the index of the link of this name; the number of links if there is none. */
-size_t mjcf_link_index(const struct Robot *robot, const char *name);
+size_t robot_link_index(const struct Robot *robot, const char *name);
 
 /* Sets the velocity in the world of a point of a body that moves with this velocity. */
-void mjcf_velocity_at(const struct Velocity *velocity, const double point[3], double result[3]);
+void robot_velocity_at(const struct Velocity *velocity, const double point[3], double result[3]);
 
-/* The velocities, and the Cholesky factor of the mass matrix; NULL before mjcf_find_inertia(). */
+/* The velocities, and the Cholesky factor of the mass matrix; NULL before robot_find_inertia(). */
 struct Inertia {
   struct Velocities all;
   double *factor;
@@ -38,10 +39,11 @@ struct Inertia {
  * Finds the inertia if it is not yet known. Returns false after reporting a tendon with armature, whose inertia is not
  * computed. what: needs the inertia; remedy: completes "expected ... in its place".
  */
-bool mjcf_find_inertia(struct Mjcf *mjcf, struct Inertia *inertia, long line, const char *what, const char *remedy);
+bool robot_find_inertia(const struct Robot *robot, struct Inertia *inertia, struct Diagnostics *diagnostics, long line,
+                        const char *what, const char *remedy);
 
 /*
  * Returns 1/(m^T M^-1 m) for the mass matrix M and the moments m, one for each velocity. It is the inertia that a force
  * with these moments moves while all joints move freely. Not finite without moments, or for a joint without inertia.
  */
-double mjcf_reflected_inertia(const struct Inertia *inertia, const double *moments);
+double robot_reflected_inertia(const struct Inertia *inertia, const double *moments);

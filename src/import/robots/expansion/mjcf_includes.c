@@ -6,11 +6,8 @@
 #include "base/memory.h"
 #include "base/paths.h"
 #include "names/names.h"
+#include "robots/expansion/mjcf_files.h"
 #include "xml/nodes.h"
-#include "xml/xml.h"
-
-/* Depth of includes; it bounds the depth of the resulting tree. */
-enum { DEPTH_LIMIT = 8 };
 
 /* The file being read, and all files read so far. */
 struct Inclusion {
@@ -38,10 +35,10 @@ static char *find_file(struct Inclusion *inclusion, xmlNodePtr node, long line) 
     report_error(inclusion->diagnostics, line,
                  "the file '%s' of an <include> cannot be read: %s; expected a path relative to the robot's file",
                  named, strerror(errno));
-  else if (inclusion->depth == DEPTH_LIMIT)
+  else if (inclusion->depth == MJCF_DEPTH_LIMIT)
     report_error(inclusion->diagnostics, line,
                  "more than %d files include each other in a row; expected fewer, some of them side by side",
-                 DEPTH_LIMIT);
+                 MJCF_DEPTH_LIMIT);
   else if (names_find(inclusion->known, canonical) != NULL)
     report_error(inclusion->diagnostics, line,
                  "the file '%s' is included twice, or includes itself; expected each file once", named);
@@ -52,37 +49,15 @@ static char *find_file(struct Inclusion *inclusion, xmlNodePtr node, long line) 
   return NULL;
 }
 
-/* Parses a file. Messages name it by the path at which it was found. */
-static xmlDocPtr load(struct Inclusion *inclusion, const char *path, long line) {
-  struct Diagnostics *diagnostics = inclusion->diagnostics;
-  const char *file = diagnostics->file, *origin = diagnostics->origin;
-  diagnostics->origin = format_text(" (included on line %ld of %s)", line, inclusion->robot);
-  diagnostics->file = path;
-  xmlDocPtr document = xml_read(path, diagnostics);
-  diagnostics->file = file;
-  diagnostics->origin = origin;
-  return document;
-}
-
-/*
- * Gives copied nodes the lines of the originals in their own file. If lines are not noted, the copies get the line of
- * the <include>.
- */
-static void set_lines(const struct Diagnostics *of_file, long include, xmlNodePtr copy, const xmlNode *original) {
-  for (; copy != NULL && original != NULL; copy = copy->next, original = original->next) {
-    long line = line_of(original), noted = note_line(of_file, line);
-    set_line(copy, of_file->noted != NULL ? noted : include);
-    if (copy->type == XML_ELEMENT_NODE) set_lines(of_file, include, copy->children, original->children);
-  }
-}
-
 static void insert_in(struct Inclusion *inclusion, xmlNodePtr parent);
 
 /* Replaces the <include> by the elements of its file. */
 static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
   long line = inclusion->line > 0 ? inclusion->line : line_of(node);
   char *path = find_file(inclusion, node, line);
-  xmlDocPtr document = path != NULL ? load(inclusion, path, line) : NULL;
+  if (path == NULL) return;
+  struct FileLine place = {path, format_text(" (included on line %ld of %s)", line, inclusion->robot), 0};
+  xmlDocPtr document = mjcf_load(inclusion->diagnostics, place);
   if (document == NULL) return;
   struct Inclusion inner = *inclusion;
   inner.file = path;
@@ -90,17 +65,10 @@ static void replace(struct Inclusion *inclusion, xmlNodePtr node) {
   inner.depth++;
   insert_in(&inner, xmlDocGetRootElement(document));
   struct Diagnostics of_file = *inclusion->diagnostics;
-  of_file.origin = format_text(" (included on line %ld of %s)", line, inclusion->robot);
-  of_file.file = path;
-  xmlNodePtr copies = xmlDocCopyNodeList(node->doc, xmlDocGetRootElement(document)->children);
-  set_lines(&of_file, line, copies, xmlDocGetRootElement(document)->children);
+  mjcf_switch_file(&of_file, place);
+  for (xmlNodePtr child = xmlDocGetRootElement(document)->children; child != NULL; child = child->next)
+    xmlAddPrevSibling(node, mjcf_copy(&of_file, line, child, node->doc));
   xmlFreeDoc(document);
-  while (copies != NULL) {
-    xmlNodePtr next = copies->next;
-    xmlUnlinkNode(copies);
-    xmlAddPrevSibling(node, copies);
-    copies = next;
-  }
   xmlUnlinkNode(node);
   xmlFreeNode(node);
 }

@@ -10,19 +10,23 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "names/names.h"
 #include "robots/description/rigid_body.h"
 #include "robots/description/robot_file.h"
+#include "robots/expansion/mjcf_attachments.h"
+#include "robots/expansion/mjcf_files.h"
+#include "robots/expansion/mjcf_names.h"
 #include "xml/lines.h"
 #include "xml/nodes.h"
 
 /* Copies of one element, and of all elements of a file together; larger files could not be simulated. */
 enum { COUNT_LIMIT = 1000, ELEMENTS_LIMIT = 20000 };
 
+const struct EulerAngles usual_angles = {"xyz", M_PI / 180};
+
 /* A file whose <replicate> elements are replaced. */
 struct Expansion {
   xmlNodePtr root;
-  const struct EulerAngles *angles;
+  struct EulerAngles angles;
   struct Diagnostics *diagnostics;
   size_t copied; /* elements */
 };
@@ -35,58 +39,15 @@ struct Replication {
   struct Diagnostics *diagnostics;
 };
 
-/* Attributes that refer to elements, each with their kind. */
-static const char *const references[][2] = {
-    {"joint", "joint"},   {"joint1", "joint"}, {"joint2", "joint"},  {"jointinparent", "joint"}, {"site", "site"},
-    {"site1", "site"},    {"site2", "site"},   {"refsite", "site"},  {"cranksite", "site"},      {"slidersite", "site"},
-    {"sidesite", "site"}, {"body", "body"},    {"body1", "body"},    {"body2", "body"},          {"geom", "geom"},
-    {"geom1", "geom"},    {"geom2", "geom"},   {"tendon", "tendon"}, {"tendon1", "tendon"},      {"tendon2", "tendon"},
-};
-
-enum { REFERENCES = sizeof references / sizeof *references };
-
-static const char *kind_of(xmlNodePtr node) {
-  if (is_element(node, "freejoint")) return "joint";
-  return is_element(node, "fixed") || is_element(node, "spatial") ? "tendon" : (const char *)node->name;
-}
-
-static void note_name(struct Replication *replication, xmlNodePtr node) {
-  if (!has_attribute(node, "name")) return;
-  char *key = format_text("%s %s", kind_of(node), attribute(node, "name"));
-  names_set(replication->names, key, copy_text(key));
-}
-
-static void note_names(struct Replication *replication, xmlNodePtr parent) {
-  for (xmlNodePtr node = parent->children; node != NULL; node = node->next) {
-    if (node->type != XML_ELEMENT_NODE) continue;
-    note_name(replication, node);
-    note_names(replication, node);
-  }
-}
-
 /* Appends the suffix of a copy to an attribute. */
 static void add_suffix(const struct Replication *replication, xmlNodePtr node, const char *name, size_t copy) {
   char *text = format_text("%s%s%0*zu", attribute(node, name), replication->separator, (int)replication->digits, copy);
   xmlSetProp(node, (const xmlChar *)name, (const xmlChar *)text);
 }
 
-static bool is_copied(const struct Replication *replication, xmlNodePtr node, size_t reference) {
-  char *name = attribute(node, references[reference][0]);
-  return name != NULL && names_find(replication->names, format_text("%s %s", references[reference][1], name)) != NULL;
-}
-
-/* Returns the number of references to copied elements in an element and its descendants. */
-static size_t count_references(const struct Replication *replication, xmlNodePtr node) {
-  size_t count = 0;
-  for (size_t i = 0; i < REFERENCES; i++) count += is_copied(replication, node, i);
-  for (xmlNodePtr child = node->children; child != NULL; child = child->next)
-    if (child->type == XML_ELEMENT_NODE) count += count_references(replication, child);
-  return count;
-}
-
 static void rename_references(const struct Replication *replication, xmlNodePtr node, size_t copy) {
-  for (size_t i = 0; i < REFERENCES; i++)
-    if (is_copied(replication, node, i)) add_suffix(replication, node, references[i][0], copy);
+  for (size_t i = 0; i < MJCF_REFERENCES; i++)
+    if (mjcf_refers(replication->names, node, i)) add_suffix(replication, node, mjcf_references[i].attribute, copy);
   for (xmlNodePtr child = node->children; child != NULL; child = child->next)
     if (child->type == XML_ELEMENT_NODE) rename_references(replication, child, copy);
 }
@@ -97,23 +58,9 @@ static void rename_all(const struct Replication *replication, xmlNodePtr node, s
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) rename_all(replication, child, copy);
 }
 
-static void set_lines(xmlNodePtr copy, xmlNodePtr original) {
-  set_line(copy, line_of(original));
-  for (xmlNodePtr a = copy->children, b = original->children; a != NULL && b != NULL; a = a->next, b = b->next)
-    if (a->type == XML_ELEMENT_NODE) set_lines(a, b);
-}
-
-static xmlNodePtr copy_of(xmlNodePtr node) {
-  xmlNodePtr copy = xmlDocCopyNode(node, node->doc, 1);
-  set_lines(copy, node);
-  return copy;
-}
-
 /* Reports an <equality> between a copied element and another one, which MuJoCo would omit. */
 static void check_equality(const struct Replication *replication, xmlNodePtr node) {
-  size_t count = 0, copied = count_references(replication, node);
-  for (size_t i = 0; i < REFERENCES; i++) count += has_attribute(node, references[i][0]);
-  if (copied < count)
+  if (mjcf_count_references(replication->names, node) < mjcf_count_references(NULL, node))
     report_error(replication->diagnostics, line_of(node),
                  "a <%s> of <equality> is between an element of a <replicate> and another one; expected both in the "
                  "<replicate>, or one <%s> for each copy",
@@ -125,20 +72,20 @@ static void copy_references(struct Replication *replication, xmlNodePtr section)
   xmlNodePtr *found = NULL;
   size_t count = 0;
   for (xmlNodePtr node = section->children; node != NULL; node = node->next) {
-    if (node->type != XML_ELEMENT_NODE || count_references(replication, node) == 0) continue;
+    if (node->type != XML_ELEMENT_NODE || mjcf_count_references(replication->names, node) == 0) continue;
     if (is_element(section, "equality")) check_equality(replication, node);
     found = make_room(found, count, sizeof(xmlNodePtr));
     found[count++] = node;
   }
   for (size_t copy = 0; copy < replication->count; copy++)
     for (size_t i = 0; i < count; i++) {
-      xmlNodePtr node = copy_of(found[i]);
+      xmlNodePtr node = mjcf_copy_within(found[i]);
       rename_references(replication, node, copy);
       if (has_attribute(node, "name")) add_suffix(replication, node, "name", copy);
       xmlAddChild(section, node);
     }
   for (size_t i = 0; i < count; i++) {
-    if (is_element(section, "tendon")) note_name(replication, found[i]);
+    if (is_element(section, "tendon")) mjcf_note_name(replication->names, found[i]);
     xmlUnlinkNode(found[i]);
     xmlFreeNode(found[i]);
   }
@@ -177,7 +124,7 @@ static void copy_content(const struct Replication *replication, xmlNodePtr node,
     placement = placement_within(&placement, &step);
     for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
       if (child->type != XML_ELEMENT_NODE) continue;
-      xmlNodePtr content = copy_of(child);
+      xmlNodePtr content = mjcf_copy_within(child);
       rename_all(replication, content, copy);
       xmlAddChild(frame, content);
     }
@@ -211,7 +158,6 @@ static size_t read_count(struct Expansion *expansion, xmlNodePtr node) {
 }
 
 static void replace(struct Expansion *expansion, xmlNodePtr node) {
-  static const char *const sections[] = {"tendon", "equality", "actuator", "contact"};
   char *separator = attribute(node, "sep");
   struct Replication replication = {.names = names_create(),
                                     .separator = separator != NULL ? separator : "",
@@ -219,11 +165,11 @@ static void replace(struct Expansion *expansion, xmlNodePtr node) {
                                     .diagnostics = expansion->diagnostics};
   if (replication.count == 0) return;
   replication.digits = strlen(format_text("%zu", replication.count - 1));
-  note_names(&replication, node);
-  copy_content(&replication, node, expansion->angles);
-  for (size_t i = 0; i < sizeof sections / sizeof *sections; i++)
+  mjcf_note_names(replication.names, node);
+  copy_content(&replication, node, &expansion->angles);
+  for (size_t i = 0; i < MJCF_REFERRING_SECTIONS; i++)
     for (xmlNodePtr section = expansion->root->children; section != NULL; section = section->next)
-      if (is_element(section, sections[i])) copy_references(&replication, section);
+      if (is_element(section, mjcf_referring_sections[i])) copy_references(&replication, section);
   xmlUnlinkNode(node);
   xmlFreeNode(node);
 }
@@ -238,8 +184,17 @@ static void replace_in(struct Expansion *expansion, xmlNodePtr parent) {
   }
 }
 
-void mjcf_replicate(xmlNodePtr root, const struct EulerAngles *angles, struct Diagnostics *diagnostics) {
-  struct Expansion expansion = {root, angles, diagnostics, 0};
+void mjcf_read_angles(xmlNodePtr compiler, struct EulerAngles *angles) {
+  char *sequence = attribute(compiler, "eulerseq");
+  if (attribute_is(compiler, "angle", "radian")) angles->unit = 1;
+  if (attribute_is(compiler, "angle", "degree")) angles->unit = usual_angles.unit;
+  if (sequence != NULL && strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) angles->sequence = sequence;
+}
+
+void mjcf_replicate(xmlNodePtr root, struct Diagnostics *diagnostics) {
+  struct Expansion expansion = {root, usual_angles, diagnostics, 0};
+  for (xmlNodePtr node = root->children; node != NULL; node = node->next)
+    if (is_element(node, "compiler") && mjcf_model_of(node) == 0) mjcf_read_angles(node, &expansion.angles);
   for (xmlNodePtr node = root->children; node != NULL; node = node->next)
     if (is_element(node, "worldbody")) replace_in(&expansion, node);
 }

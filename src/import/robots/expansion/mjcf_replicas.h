@@ -11,8 +11,14 @@ struct EulerAngles {
   double unit;
 };
 
+/* Angles in degrees, about the rotated axes x, y, z. */
+extern const struct EulerAngles usual_angles;
+
+/* Sets what a <compiler> says about angles, as far as it is valid. */
+void mjcf_read_angles(xmlNodePtr compiler, struct EulerAngles *angles);
+
 /*
  * Replaces each <replicate> in the tree by copies of its content. Elements of other sections that refer to names in it
  * are copied likewise. Reports wrong ones.
  */
-void mjcf_replicate(xmlNodePtr root, const struct EulerAngles *angles, struct Diagnostics *diagnostics);
+void mjcf_replicate(xmlNodePtr root, struct Diagnostics *diagnostics);

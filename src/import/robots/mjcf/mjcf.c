@@ -17,6 +17,7 @@
 
 #include "base/memory.h"
 #include "robots/mjcf/mjcf_contacts.h"
+#include "robots/expansion/mjcf_attachments.h"
 #include "robots/expansion/mjcf_includes.h"
 #include "robots/expansion/mjcf_replicas.h"
 #include "robots/mjcf/mjcf_tree.h"
@@ -25,7 +26,7 @@
 
 /* Reports unsupported elements, at any depth, that would change the motion. */
 static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const rejected[][2] = {{"attach", "the parts themselves, as MuJoCo's mj_saveLastXML writes them"},
+  static const char *const rejected[][2] = {{"attach", "it in a <body>, a <frame> or the <worldbody>"},
                                             {"composite", "rigid bodies"},
                                             {"flexcomp", "rigid bodies"},
                                             {"flex", "rigid bodies"},
@@ -38,24 +39,40 @@ static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
   }
 }
 
+/* Sets what holds for the robot's file and for attached ones without a <compiler>. */
+static void make_compilers(struct Mjcf *mjcf, size_t attached_count) {
+  static const struct MjcfCompiler usual = {.inertia_groups = {0, 5}, .has_automatic_limits = true};
+  mjcf->attached_count = attached_count;
+  mjcf->compilers = allocate(attached_count + 1, sizeof *mjcf->compilers);
+  for (size_t i = 0; i <= attached_count; i++) {
+    mjcf->compilers[i] = usual;
+    mjcf->compilers[i].angles = usual_angles;
+  }
+}
+
 static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   static const char *const units[] = {"degree", "radian", NULL}, *const where[] = {"auto", "true", "false", NULL};
-  if (has_attribute(node, "angle")) mjcf->angle = mjcf_word(mjcf, node, "angle", units) == 1 ? 1 : M_PI / 180;
-  if (has_attribute(node, "autolimits")) mjcf->has_automatic_limits = attribute_is(node, "autolimits", "true");
+  size_t model = mjcf_model_of(node);
+  struct MjcfCompiler *compiler = &mjcf->compilers[model];
+  mjcf_word(mjcf, node, "angle", units);
+  mjcf_read_angles(node, &compiler->angles);
+  if (has_attribute(node, mjcf_file_note)) compiler->file = attribute(node, mjcf_file_note);
+  if (has_attribute(node, "autolimits")) compiler->has_automatic_limits = attribute_is(node, "autolimits", "true");
   if (has_attribute(node, "inertiafromgeom"))
-    mjcf->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
+    compiler->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
   mjcf_reject(mjcf, node, "boundmass boundinertia balanceinertia");
-  mjcf->total_mass = mjcf_number(mjcf, node, "settotalmass", mjcf->total_mass);
-  mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, mjcf->inertia_groups);
+  if (mjcf->attached_count > 0 && attribute_is(node, "conflict", "merge"))
+    mjcf_error(mjcf, node, "conflict=\"merge\" of <compiler> is not read; expected the <option>s in the robot's file");
+  if (model == 0) mjcf->total_mass = mjcf_number(mjcf, node, "settotalmass", mjcf->total_mass);
+  mjcf_numbers(mjcf, node, "inertiagrouprange", 2, 2, compiler->inertia_groups);
   if (has_attribute(node, "coordinate") && !attribute_is(node, "coordinate", "local"))
     mjcf_error(mjcf, node, "coordinate=\"%s\" of <compiler> is not read; expected local",
                attribute(node, "coordinate"));
-  if (has_attribute(node, "assetdir") && mjcf->mesh_folder == NULL) mjcf->mesh_folder = attribute(node, "assetdir");
-  if (has_attribute(node, "meshdir")) mjcf->mesh_folder = attribute(node, "meshdir");
+  if (has_attribute(node, "assetdir") && compiler->mesh_folder == NULL)
+    compiler->mesh_folder = attribute(node, "assetdir");
+  if (has_attribute(node, "meshdir")) compiler->mesh_folder = attribute(node, "meshdir");
   const char *sequence = attribute(node, "eulerseq");
-  if (sequence == NULL) return;
-  if (strlen(sequence) == 3 && strspn(sequence, "xyzXYZ") == 3) mjcf->euler_sequence = sequence;
-  else
+  if (sequence != NULL && strcmp(sequence, compiler->angles.sequence) != 0)
     mjcf_error(mjcf, node,
                "eulerseq=\"%.60s\" of <compiler> is not valid; expected three of the letters x, y, z, X, Y, Z",
                sequence);
@@ -89,7 +106,7 @@ static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joi
 
 /* Reads a hinge or slide. Its coordinate is `ref` when its body is as placed. */
 static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
-  double scale = joint->type == REVOLUTE ? mjcf->angle : 1, limits[2];
+  double scale = joint->type == REVOLUTE ? mjcf_compiler(mjcf, node)->angles.unit : 1, limits[2];
   read_axis(mjcf, node, joint);
   joint->start.position[0] = mjcf_number(mjcf, node, "ref", 0) * scale;
   joint->rest = mjcf_number(mjcf, node, "springref", 0) * scale;
@@ -292,24 +309,21 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
                       .meshes = names_create(),
                       .bodies = names_create(),
                       .placements = names_create(),
-                      .angle = M_PI / 180,
-                      .total_mass = -1,
-                      .euler_sequence = "xyz",
-                      .inertia_groups = {0, 5},
-                      .has_automatic_limits = true};
+                      .total_mass = -1};
   int errors = diagnostics->errors;
   robot->name = attribute(root, "model");
   if (robot->name == NULL || *robot->name == '\0') robot->name = copy_text("robot");
   robot->line = line_of(root);
   robot->gravity[2] = -9.81;
   mjcf_insert_files(root, diagnostics);
+  make_compilers(&mjcf, mjcf_attach(root, diagnostics));
   check_world(&mjcf);
   mjcf_check_classes(&mjcf, root);
   check_elements(&mjcf, root);
   if (diagnostics->errors > errors) return robot;
   for_each(&mjcf, "compiler", false, read_compiler);
   for_each(&mjcf, "option", false, read_option);
-  mjcf_replicate(root, &(struct EulerAngles){mjcf.euler_sequence, mjcf.angle}, diagnostics);
+  mjcf_replicate(root, diagnostics);
   mjcf_add_link(&mjcf, root, copy_text(mjcf_world));
   mjcf_note_placement(&mjcf, mjcf_world, NULL, &no_displacement);
   for_each(&mjcf, "contact", true, mjcf_read_rule);

@@ -208,20 +208,20 @@ static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *
   link->body = body_seen_from(&placement, &body);
 }
 
-/* Reads the geoms of a body, and those in its <frame>s, which transform them. */
-static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placement *outer, bool weighs,
+/* Reads the geoms of a body, and those in its <frame>s, which transform them. groups: that have a mass; NULL for none. */
+static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placement *outer, const double *groups,
                        struct RobotLink *link) {
   for (xmlNodePtr child = node->children; child != NULL; child = child->next) {
     if (is_element(child, "frame")) {
       struct Placement inner = mjcf_placement(mjcf, child);
       inner = placement_within(outer, &inner);
-      read_geoms(mjcf, child, &inner, weighs, link);
+      read_geoms(mjcf, child, &inner, groups, link);
     }
     if (!is_element(child, "geom")) continue;
     struct Geom geom = read_geom(mjcf, child);
     geom.placement = placement_within(outer, &geom.placement);
     double group = mjcf_number(mjcf, child, "group", 0);
-    if (weighs && group >= mjcf->inertia_groups[0] && group <= mjcf->inertia_groups[1]) {
+    if (groups != NULL && group >= groups[0] && group <= groups[1]) {
       struct RigidBody part = weigh(mjcf, child, &geom);
       link->body = body_joined(&link->body, &part);
     }
@@ -232,7 +232,9 @@ static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placemen
 void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {
   bool is_world = is_element(node, "worldbody");
   xmlNodePtr inertial = child_of(&mjcf->file, node, "inertial");
-  bool has_own = inertial != NULL && mjcf->inertia_from_geoms != ALWAYS;
+  const struct MjcfCompiler *compiler = mjcf_compiler(mjcf, node);
+  bool has_own = inertial != NULL && compiler->inertia_from_geoms != ALWAYS,
+       weighs = !is_world && !has_own && compiler->inertia_from_geoms != NEVER;
   if (has_own) read_inertial(mjcf, inertial, link);
-  read_geoms(mjcf, node, &no_displacement, !is_world && !has_own && mjcf->inertia_from_geoms != NEVER, link);
+  read_geoms(mjcf, node, &no_displacement, weighs ? compiler->inertia_groups : NULL, link);
 }

@@ -22,6 +22,7 @@
 #include "model/hull.h"
 #include "meshes/mesh_file.h"
 #include "meshes/package_path.h"
+#include "robots/expansion/mjcf_names.h"
 #include "xml/nodes.h"
 
 /*
@@ -111,8 +112,10 @@ static char *find_file(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mes
     mesh->problem = copy_text("a <mesh> has no file; expected an STL or OBJ file");
     return NULL;
   }
-  char *named =
-      mjcf->mesh_folder != NULL && file[0] != '/' ? format_text("%s/%s", mjcf->mesh_folder, file) : copy_text(file);
+  const struct MjcfCompiler *compiler = mjcf_compiler(mjcf, asset);
+  bool is_in_folder = compiler->mesh_folder != NULL && file[0] != '/';
+  char *named = is_in_folder ? format_text("%s/%s", compiler->mesh_folder, file) : copy_text(file);
+  if (compiler->file != NULL) named = path_beside_file(compiler->file, named);
   char *path = path_in_package(robot, named);
   if (path == NULL)
     mesh->problem =
@@ -140,11 +143,8 @@ static void read_mesh(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mesh
 /* True if the asset has this name. The default is its file's name without folders and ending. */
 static bool is_named(const struct Mjcf *mjcf, xmlNodePtr asset, const char *name) {
   if (has_attribute(asset, "name")) return attribute_is(asset, "name", name);
-  const char *file = mjcf_text(mjcf, asset, "file"), *slash = file != NULL ? strrchr(file, '/') : NULL;
-  if (file == NULL) return false;
-  const char *begin = slash != NULL ? slash + 1 : file, *end = strrchr(begin, '.');
-  size_t length = end != NULL ? (size_t)(end - begin) : strlen(begin);
-  return strlen(name) == length && strncmp(begin, name, length) == 0;
+  const char *file = mjcf_text(mjcf, asset, "file");
+  return file != NULL && strcmp(mjcf_asset_name(file), name) == 0;
 }
 
 static xmlNodePtr find_asset(const struct Mjcf *mjcf, const char *name) {

@@ -4,7 +4,12 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "robots/expansion/mjcf_attachments.h"
 #include "xml/nodes.h"
+
+const struct MjcfCompiler *mjcf_compiler(const struct Mjcf *mjcf, xmlNodePtr node) {
+  return &mjcf->compilers[mjcf_model_of(node)];
+}
 
 /* Returns the <default> of this class, at any depth; NULL for none. */
 static xmlNodePtr find_class(xmlNodePtr parent, const char *name) {
@@ -17,25 +22,30 @@ static xmlNodePtr find_class(xmlNodePtr parent, const char *name) {
   return NULL;
 }
 
-/* Returns the class of an element: its own, or the childclass of the nearest ancestor; NULL for none. */
+/*
+ * Returns the class of an element: its own, or the childclass of the nearest ancestor from the same file; NULL for
+ * none.
+ */
 static const char *class_of(xmlNodePtr node) {
   const char *name = attribute(node, "class");
-  for (node = node->parent; name == NULL && node != NULL && node->type == XML_ELEMENT_NODE; node = node->parent)
+  size_t model = mjcf_model_of(node);
+  for (node = node->parent; name == NULL && node != NULL && mjcf_model_of(node) == model; node = node->parent)
     name = attribute(node, "childclass");
   return name;
 }
 
 /*
- * Returns the class from which this one inherits: the enclosing <default>. All outermost <default>s together form the
- * class of all elements; they are visited from the last one. NULL at the end.
+ * Returns the class from which this one inherits: the enclosing <default>. All outermost <default>s of a file together
+ * form the class of all its elements; they are visited from the last one. class: NULL before the first. NULL at the end.
  */
-static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr class) {
+static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr element, xmlNodePtr class) {
+  size_t model = mjcf_model_of(class != NULL ? class : element);
   if (class != NULL && class->parent != mjcf->root) {
     if (class->parent->parent != mjcf->root) return class->parent;
     class = NULL;
   }
   xmlNodePtr node = class != NULL ? class->prev : mjcf->root->last;
-  while (node != NULL && !is_element(node, "default")) node = node->prev;
+  while (node != NULL && !(is_element(node, "default") && mjcf_model_of(node) == model)) node = node->prev;
   return node;
 }
 
@@ -43,7 +53,7 @@ static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr class) {
 static xmlNodePtr first_class(const struct Mjcf *mjcf, xmlNodePtr node) {
   const char *name = class_of(node);
   xmlNodePtr class = name != NULL ? find_class(mjcf->root, name) : NULL;
-  return class != NULL && class->parent != mjcf->root ? class : next_class(mjcf, NULL);
+  return class != NULL && class->parent != mjcf->root ? class : next_class(mjcf, node, NULL);
 }
 
 /* True if the text is one of the words, which end with NULL. */
@@ -73,7 +83,7 @@ static bool is_default_of(xmlNodePtr node, xmlNodePtr element, const char *name)
 /* Returns the element, or of the <default>s for it the innermost, that has one of two attributes; NULL for none. */
 static xmlNodePtr holder_of(const struct Mjcf *mjcf, xmlNodePtr node, const char *name, const char *other) {
   if (has_attribute(node, name) || has_attribute(node, other)) return node;
-  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class))
+  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, node, class))
     for (xmlNodePtr found = class->last; found != NULL; found = found->prev)
       if (is_default_of(found, node, name) && (has_attribute(found, name) || has_attribute(found, other))) return found;
   return NULL;
@@ -114,7 +124,7 @@ static bool overrides_law(xmlNodePtr found, xmlNodePtr node, bool *is_set_back) 
 void mjcf_check_laws(struct Mjcf *mjcf, xmlNodePtr node) {
   bool is_set_back = false;
   if (is_element(node, "motor")) return;
-  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, class))
+  for (xmlNodePtr class = first_class(mjcf, node); class != NULL; class = next_class(mjcf, node, class))
     for (xmlNodePtr found = class->last; found != NULL; found = found->prev) {
       if (!overrides_law(found, node, &is_set_back)) continue;
       mjcf_error(mjcf, node,
@@ -216,12 +226,6 @@ struct Matrix3 rotation_of_z(const double direction[3]) {
   return rotation_about(axis, atan2(across, direction[2]));
 }
 
-struct Matrix3 rotation_of_quaternion(const double q[4]) {
-  double axis[3] = {q[1], q[2], q[3]};
-  double length = make_unit(axis);
-  return length > 0 ? rotation_about(axis, 2 * atan2(length, q[0])) : no_displacement.rotation;
-}
-
 /* Sets the rotation from an x axis and a y axis, which is made orthogonal to x. Returns false if they are parallel. */
 static bool of_axes(const double given[6], struct Matrix3 *rotation) {
   double x[3] = {given[0], given[1], given[2]}, y[3] = {given[3], given[4], given[5]}, z[3];
@@ -253,10 +257,10 @@ static size_t orientation_of(struct Mjcf *mjcf, xmlNodePtr node, const char *con
   return kind;
 }
 
-static struct Matrix3 of_euler(const struct Mjcf *mjcf, const double given[3]) {
+static struct Matrix3 of_euler(const struct EulerAngles *of_file, const double given[3]) {
   double angles[3];
-  for (int i = 0; i < 3; i++) angles[i] = given[i] * mjcf->angle;
-  return rotation_of_euler(mjcf->euler_sequence, angles);
+  for (int i = 0; i < 3; i++) angles[i] = given[i] * of_file->unit;
+  return rotation_of_euler(of_file->sequence, angles);
 }
 
 struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node) {
@@ -274,8 +278,8 @@ struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node) {
     placement.rotation = rotation_of_quaternion(v);
   } else if (kind == AXIS_AND_ANGLE) {
     is_right = make_unit(v) > 0;
-    placement.rotation = rotation_about(v, v[3] * mjcf->angle);
-  } else if (kind == EULER_ANGLES) placement.rotation = of_euler(mjcf, v);
+    placement.rotation = rotation_about(v, v[3] * mjcf_compiler(mjcf, node)->angles.unit);
+  } else if (kind == EULER_ANGLES) placement.rotation = of_euler(&mjcf_compiler(mjcf, node)->angles, v);
   else if (kind == TWO_AXES) is_right = of_axes(v, &placement.rotation);
   else {
     is_right = make_unit(v) > 0;
@@ -293,7 +297,7 @@ void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const ch
   limits[0] = limits[1] = NAN;
   double read[2] = {0};
   bool is_given = mjcf_numbers(mjcf, node, range, 2, 2, read) > 0;
-  if (word == 2 || (word == 0 && !(is_given && mjcf->has_automatic_limits))) return;
+  if (word == 2 || (word == 0 && !(is_given && mjcf_compiler(mjcf, node)->has_automatic_limits))) return;
   if (read[0] < read[1]) memcpy(limits, read, sizeof read);
   else
     mjcf_error(mjcf, node, "%s of <%s> is from %g to %g; expected the lower one first", range, (const char *)node->name,

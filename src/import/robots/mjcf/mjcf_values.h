@@ -6,6 +6,7 @@
 
 #include "names/names.h"
 #include "robots/description/robot_file.h"
+#include "robots/expansion/mjcf_replicas.h"
 
 /* MuJoCo's groups 0 to 30 of actuators. */
 enum { ACTUATOR_GROUPS = 31 };
@@ -31,18 +32,24 @@ struct ContactRule {
   bool is_pair;
 };
 
+/* What <compiler> says about a file. */
+struct MjcfCompiler {
+  struct EulerAngles angles;
+  bool has_automatic_limits;
+  enum InertiaFromGeoms inertia_from_geoms;
+  double inertia_groups[2]; /* geoms of groups in this range have a mass */
+  char *mesh_folder;        /* folder of mesh files, relative to the file; NULL for its own */
+  char *file;               /* relative to the robot's file; NULL for that */
+};
+
 /* An MJCF file while it is read. */
 struct Mjcf {
   struct RobotFile file;
   xmlNodePtr root;
-  double angle; /* rad per unit of angles in the file */
-  const char *euler_sequence;
-  bool has_automatic_limits;
-  enum InertiaFromGeoms inertia_from_geoms;
-  double inertia_groups[2];             /* geoms of groups in this range have a mass */
+  struct MjcfCompiler *compilers;       /* of the robot's file, and of each attached one */
+  size_t attached_count;                /* of attached files */
   double total_mass;                    /* kg; of all bodies together; -1 for the sum in the file */
   size_t unnamed_count;                 /* number of bodies without a name so far */
-  char *mesh_folder;                    /* folder of mesh files, relative to the robot's file; NULL for its own */
   struct Names *meshes;                 /* used meshes by name -> struct MjcfMesh */
   struct MjcfContact ground, *contacts; /* of the ground plane, and of all other geoms that touch */
   struct ContactRule *rules;
@@ -55,6 +62,9 @@ struct Mjcf {
 
 /* Reports an error on the line of an element. */
 #define mjcf_error(mjcf, node, ...) report_error((mjcf)->file.diagnostics, line_of(node), __VA_ARGS__)
+
+/* Returns what <compiler> says about the file of an element. */
+const struct MjcfCompiler *mjcf_compiler(const struct Mjcf *mjcf, xmlNodePtr node);
 
 /* Returns an attribute of the element or of its classes, innermost first; NULL if none has it. */
 const char *mjcf_text(const struct Mjcf *mjcf, xmlNodePtr node, const char *name);
@@ -94,9 +104,6 @@ struct Placement mjcf_placement(struct Mjcf *mjcf, xmlNodePtr node);
 
 /* Returns the shortest rotation that takes z to this direction, which is not 0. */
 struct Matrix3 rotation_of_z(const double direction[3]);
-
-/* Returns the rotation by a quaternion of any nonzero norm, the real part first. */
-struct Matrix3 rotation_of_quaternion(const double q[4]);
 
 /* Normalizes a vector and returns its length; keeps a zero vector. */
 double make_unit(double vector[3]);
