@@ -44,7 +44,12 @@ static double solve(const struct ContactImpulses *impulses) {
     else if (is_first)
       own_rate[row] = own_rate[row + 1] = 0.5 * (w[0] + w[n + 1]) + hypot(0.5 * (w[0] - w[n + 1]), 0.5 * (w[1] + w[n]));
   }
-  struct Cones cones = {&resolution, &cone_path, impulses, rate, impulse, own_rate};
+  struct Cones cones = {.resolution = &resolution,
+                        .path = &cone_path,
+                        .impulses = impulses,
+                        .rate = rate,
+                        .impulse = impulse,
+                        .scale = own_rate};
   return cone_interior(&cones, 1e-12, true, work);
 }
 

@@ -19,29 +19,28 @@ static const double law_nearly_holds = 1e-9;
 static const double start_directions[][2] = {{1.0, 0.0}, {-1.0, 0.0}, {0.0, 1.0}, {0.0, -1.0}};
 enum { DIRECTIONS = sizeof start_directions / sizeof *start_directions };
 
-/* Takes workspace for the cones and their solvers; also for the impulses if impulse is NULL. NULL without memory. */
-static double *create_cones(const struct Resolution *resolution, const struct ContactImpulses *impulses,
-                            const double *rate, double *impulse, struct Cones *cones) {
-  struct Instance *instance = resolution->instance;
-  const struct ConePath *path = resolution->switches->cone_path;
+/* Takes workspace for the cones; also for the impulses if impulse is NULL. False without memory. */
+static bool create_cones(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                         const double *rate, double *impulse, struct Cones *cones) {
   size_t n = impulses->count;
-  double *block = scratch_take(instance, SCRATCH_CONES, (4 * n + cones_work_count(path, n)) * sizeof *block);
-  *cones = (struct Cones){.resolution = resolution, .path = path, .impulses = impulses, .rate = rate, .scale = block};
+  *cones = (struct Cones){
+      .resolution = resolution, .path = resolution->switches->cone_path, .impulses = impulses, .rate = rate};
+  size_t count = n + cones_lay_out(cones, n, NULL);
+  double *block = scratch_take(resolution->instance, SCRATCH_CONES, count * sizeof *block);
   if (block == NULL) {
-    solver_is_out_of_memory(instance);
-    return NULL;
+    solver_is_out_of_memory(resolution->instance);
+    return false;
   }
-  cones->impulse = impulse != NULL ? impulse : block + n;
-  return block + 2 * n;
+  cones_lay_out(cones, n, block + n);
+  cones->impulse = impulse != NULL ? impulse : block;
+  return true;
 }
 
 bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                         double *impulse) {
   struct Cones cones;
-  size_t n = impulses->count;
-  double *work = create_cones(resolution, impulses, rate, impulse, &cones);
-  if (work == NULL) return false;
-  bool is_done = cones_fill_scales(&cones) && cones_find_impulses(&cones, work, work + n, work + 2 * n);
+  if (!create_cones(resolution, impulses, rate, impulse, &cones)) return false;
+  bool is_done = cones_find_impulses(&cones);
   scratch_return(resolution->instance, SCRATCH_CONES);
   return is_done;
 }
@@ -49,10 +48,8 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
 bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                       double *force, double *error) {
   struct Cones cones;
-  size_t n = impulses->count;
-  double *work = create_cones(resolution, impulses, rate, force, &cones);
-  if (work == NULL) return false;
-  double miss = cones_fill_scales(&cones) ? cones_find_forces(&cones, work, work + n, work + 2 * n) : INFINITY;
+  if (!create_cones(resolution, impulses, rate, force, &cones)) return false;
+  double miss = cones_find_forces(&cones);
   bool is_done = miss <= law_roughly_holds;
   *error = is_done ? 2.0 * miss * cones_largest(&cones) : INFINITY;
   scratch_return(resolution->instance, SCRATCH_CONES);
@@ -96,16 +93,17 @@ bool cone_impulses_have_others(const struct Resolution *resolution, const struct
   struct Cones cones;
   uint32_t seed = 1;
   size_t n = impulses->count, single = impulses->contact_count * DIRECTIONS;
-  double *work = n > OTHER_ROWS ? NULL : create_cones(resolution, impulses, rate, NULL, &cones), largest = 0.0;
-  bool is_other = false, moves = work != NULL && cones_fill_scales(&cones);
+  if (n > OTHER_ROWS || !create_cones(resolution, impulses, rate, NULL, &cones)) return false;
+  double largest = 0.0;
+  bool is_other = false, moves = cones_fill_scales(&cones);
   for (size_t i = 0; i < impulses->contact_count; i++) largest = fmax(largest, impulse[i]);
   for (size_t i = 0; i < single + RANDOM_STARTS && moves && !is_other; i++) {
     if (i < single) fill_single_start(&cones, largest, i);
     else fill_random_start(&cones, largest, &seed);
-    memcpy(work + n, cones.impulse, n * sizeof *cones.impulse);
-    double miss = cones_search_from(&cones, AT_ONCE, OTHER_LAW_TRIALS, work, work + n, work + 2 * n);
+    memcpy(cones.swept, cones.impulse, n * sizeof *cones.impulse);
+    double miss = cones_search_from(&cones, AT_ONCE, OTHER_LAW_TRIALS);
     is_other = miss <= law_nearly_holds && is_other_outcome(impulses, cones.impulse, impulse);
   }
-  if (work != NULL) scratch_return(resolution->instance, SCRATCH_CONES);
+  scratch_return(resolution->instance, SCRATCH_CONES);
   return is_other;
 }

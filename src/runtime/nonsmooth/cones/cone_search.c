@@ -28,6 +28,7 @@
 #include <string.h>
 
 #include "nonsmooth/cones/cone_newton.h"
+#include "support/arena.h"
 
 /* Trials; without an interior path there are more. */
 enum { LAW_TRIALS = 4, LAW_TRIALS_ALONE = 12 };
@@ -68,10 +69,9 @@ static void update_friction_impulse(struct Cones *cones, size_t row, size_t rows
   for (size_t i = 0; i < rows; i++) cones->impulse[row + i] = share * whole[i];
 }
 
-/* Makes sweeps. work: 2 n numbers. */
-static void sweep_impulses(struct Cones *cones, enum Sweeps kind, int count, double *work) {
+static void sweep_impulses(struct Cones *cones, enum Sweeps kind, int count) {
   size_t n = cones->impulses->count;
-  double *rate = work, *step = work + n;
+  double *rate = cones->work, *step = rate + n;
   fill_sweep_steps(cones, kind, step);
   for (int k = 0; k < count; k++) {
     for (size_t row = 0; row < n && kind == AT_ONCE; row++) rate[row] = cones_rate_behind(cones, row);
@@ -105,59 +105,66 @@ bool cones_fill_scales(struct Cones *cones) {
   return moves;
 }
 
-double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials, double *best, double *swept, double *work) {
+double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials) {
   size_t bytes = cones->impulses->count * sizeof(double);
   double least = INFINITY;
   for (int trial = 0; trial < trials && !(least <= law_holds); trial++) {
-    memcpy(cones->impulse, swept, bytes);
-    if (trial > 0) sweep_impulses(cones, kind, LAW_SWEEPS * trial, work);
-    memcpy(swept, cones->impulse, bytes);
-    double miss = cones_relative_miss(cones, cone_newton(cones, work));
-    if (miss < least) memcpy(best, cones->impulse, bytes);
+    memcpy(cones->impulse, cones->swept, bytes);
+    if (trial > 0) sweep_impulses(cones, kind, LAW_SWEEPS * trial);
+    memcpy(cones->swept, cones->impulse, bytes);
+    double miss = cones_relative_miss(cones, cone_newton(cones, cones->work));
+    if (miss < least) memcpy(cones->best, cones->impulse, bytes);
     least = fmin(least, miss);
   }
-  memcpy(cones->impulse, best, bytes);
+  memcpy(cones->impulse, cones->best, bytes);
   return least;
 }
 
-size_t cones_work_count(const struct ConePath *path, size_t n) {
-  return path != NULL ? path->work_count(n) : cone_newton_work_count(n);
+size_t cones_lay_out(struct Cones *cones, size_t n, double *block) {
+  struct Arena arena = {(uintptr_t)block};
+  ARENA_NUMBERS(&arena, n, &cones->scale, &cones->best, &cones->swept);
+  ARENA_NUMBERS(&arena, cones->path != NULL ? cones->path->work_count(n) : cone_newton_work_count(n), &cones->work);
+  return (arena.next - (uintptr_t)block) / sizeof(double);
 }
 
 /* True if the residual is small, or a rounding error of velocities, as in the slowest impacts. */
-static bool is_accepted(struct Cones *cones, double miss, double *work) {
-  return miss <= law_roughly_holds || cone_newton(cones, work) <= cones->impulses->rounding;
+static bool is_accepted(struct Cones *cones, double miss) {
+  return miss <= law_roughly_holds || cone_newton(cones, cones->work) <= cones->impulses->rounding;
 }
 
-bool cones_find_impulses(struct Cones *cones, double *best, double *swept, double *work) {
-  double miss =
-      cones_search_from(cones, AT_ONCE, cones->path != NULL ? LAW_TRIALS : LAW_TRIALS_ALONE, best, swept, work);
+/* Sweeps in turn, from no impulse. */
+static double search_in_turn(struct Cones *cones) {
+  memset(cones->swept, 0, cones->impulses->count * sizeof *cones->swept);
+  return cones_search_from(cones, IN_TURN, LAW_TRIALS);
+}
+
+bool cones_find_impulses(struct Cones *cones) {
+  if (!cones_fill_scales(cones)) return false;
+  double miss = cones_search_from(cones, AT_ONCE, cones->path != NULL ? LAW_TRIALS : LAW_TRIALS_ALONE);
   if (miss <= law_holds) return true;
-  if (cones->path == NULL) return is_accepted(cones, miss, work);
-  memcpy(best, cones->impulse, cones->impulses->count * sizeof *best);
-  double other = cones->path->find(cones, law_holds, false, work);
-  if (!(other < miss)) memcpy(cones->impulse, best, cones->impulses->count * sizeof *best);
-  if (is_accepted(cones, fmin(other, miss), work)) return true;
-  memset(swept, 0, cones->impulses->count * sizeof *swept);
-  return is_accepted(cones, cones_search_from(cones, IN_TURN, LAW_TRIALS, best, swept, work), work);
+  if (cones->path == NULL) return is_accepted(cones, miss);
+  double other = cones->path->find(cones, law_holds, false, cones->work);
+  if (!(other < miss)) memcpy(cones->impulse, cones->best, cones->impulses->count * sizeof *cones->best);
+  return is_accepted(cones, fmin(other, miss)) || is_accepted(cones, search_in_turn(cones));
 }
 
-double cones_find_forces(struct Cones *cones, double *best, double *swept, double *work) {
-  double miss = cones->path->find(cones, law_holds, true, work);
-  if (miss <= law_roughly_holds) return miss;
-  memset(swept, 0, cones->impulses->count * sizeof *swept);
-  return cones_search_from(cones, IN_TURN, LAW_TRIALS, best, swept, work);
+double cones_find_forces(struct Cones *cones) {
+  if (!cones_fill_scales(cones)) return INFINITY;
+  double miss = cones->path->find(cones, law_holds, true, cones->work);
+  return miss <= law_roughly_holds ? miss : search_in_turn(cones);
 }
 
 size_t pressing_forces_work_count(const struct ConePath *path, size_t n) {
-  return 3 * n + cones_work_count(path, n);
+  struct Cones cones = {.path = path};
+  return cones_lay_out(&cones, n, NULL);
 }
 
 bool pressing_forces_find(const struct ConePath *path, size_t n, double *delassus, const double *rate, double *force,
                           double *work) {
   struct ContactImpulses contacts = {.contact_count = n, .count = n, .deciding_count = n, .delassus = delassus};
-  struct Cones cones = {.path = path, .impulses = &contacts, .rate = rate, .impulse = force, .scale = work};
+  struct Cones cones = {.path = path, .impulses = &contacts, .rate = rate, .impulse = force};
+  size_t count = cones_lay_out(&cones, n, work);
   memset(force, 0, n * sizeof *force);
-  memset(work, 0, 3 * n * sizeof *work);
-  return cones_fill_scales(&cones) && cones_find_impulses(&cones, work + n, work + 2 * n, work + 3 * n);
+  memset(work, 0, count * sizeof *work);
+  return cones_find_impulses(&cones);
 }

@@ -12,26 +12,29 @@ static const double law_roughly_holds = 1e-5;
 /* Impulses of a sweep change at once, or in turn, each with the rates by the impulses before it. */
 enum Sweeps { AT_ONCE, IN_TURN };
 
-/* Returns the number of doubles of workspace that the functions below need as `work`. */
-size_t cones_work_count(const struct ConePath *path, size_t n);
+/* Divides a block among scale, best, swept and work for n rows. Returns its number of doubles. */
+size_t cones_lay_out(struct Cones *cones, size_t n, double *block);
 
 /* Fills the scales. False if a contact cannot be moved. */
 bool cones_fill_scales(struct Cones *cones);
 
 /*
- * Makes trials, each with sweeps from where the sweeps before ended (the first with none, at swept), then Newton's
- * method. Leaves the best impulses in cones->impulse, and returns their relative residual. best, swept: n numbers.
+ * Makes trials, each with sweeps from where the sweeps before ended (the first with none, at cones->swept), then
+ * Newton's method. Leaves the best impulses in cones->impulse, and returns their relative residual.
  */
-double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials, double *best, double *swept, double *work);
+double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials);
 
-/* Finds impulses by sweeps from swept; by an interior path if these do not converge. False if none are found. */
-bool cones_find_impulses(struct Cones *cones, double *best, double *swept, double *work);
+/*
+ * Finds impulses by sweeps from cones->swept; by an interior path if these do not converge. False if none are found, or
+ * a contact cannot be moved.
+ */
+bool cones_find_impulses(struct Cones *cones);
 
 /*
  * Finds forces by an interior path, in the middle of those that are possible; else by sweeps from no force. Returns
- * their relative residual.
+ * their relative residual; INFINITY if a contact cannot be moved.
  */
-double cones_find_forces(struct Cones *cones, double *best, double *swept, double *work);
+double cones_find_forces(struct Cones *cones);
 
 /*
  * Finds forces of n contacts without rows of friction. delassus: n x n, may be nonsymmetric, as where frictions slide;

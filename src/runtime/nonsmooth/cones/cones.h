@@ -14,6 +14,8 @@ struct Cones {
   const double *rate; /* of each row, before the impact; of contacts times 1 + e */
   double *impulse;
   double *scale; /* change of the own rate by a unit impulse, in a plane the larger eigenvalue; 0 if there is none */
+  double *best, *swept; /* impulses with the least residual, and those where the last sweeps ended */
+  double *work;         /* workspace of the methods */
 };
 
 /* The interior-point method (cone_interior.h). FMUs whose contacts have no friction do not link it. */
