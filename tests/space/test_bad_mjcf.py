@@ -106,6 +106,13 @@ def test_bad_attachments(change, place, message, tmp_path):
     assert result.returncode == 1 and re.search(rf"^{place}: {re.escape(message)}", result.stderr, re.MULTILINE), result.stderr
 
 
+def test_lines_of_included_files(tmp_path):
+    """Messages that name a second line name it in the file where it is."""
+    (tmp_path / "part.xml").write_text('<mujocoinclude>\n\n\n<body name="a"><joint/><geom size="0.1"/></body>\n</mujocoinclude>')
+    text = '<mujoco><worldbody>\n<include file="part.xml"/>\n<body name="a"><joint/><geom size="0.1"/></body>\n</worldbody></mujoco>'
+    check(tmp_path, text, 3, "the link 'a' is already defined on line 4; expected another name")
+
+
 KEYS = '<keyframe><key name="home" qpos="0.1 0.2"/><key name="short" qpos="1"/><key name="odd" qvel="0 x"/><key name="free" ctrl="1 2"/></keyframe>'
 BAD_KEYS = [
     ("hom", 1, "there is no <key> 'hom'; did you mean 'home'?"),

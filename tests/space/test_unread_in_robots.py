@@ -21,7 +21,15 @@ WHEEL = """<mujoco model="wheel">
 <geom type="box" size="0.1 0.2 0.3" mass="3" group="1"/><geom size="0.5" pos="0.5 0 0" mass="9" group="2"/><geom size="0.3" pos="0 0 0.5" mass="7"/></body></worldbody>
 <actuator><motor name="one" joint="hinge" group="1"/><motor name="two" joint="hinge" group="2"/><position name="three" joint="hinge" group="2" kp="5"/><motor name="four" joint="hinge"/></actuator>
 </mujoco>"""
+LATER = """<mujoco model="later"><option gravity="0 0 0"/>
+<default><position kp="4"/><default class="early"><position kv="1"/></default></default>
+<default><position kp="9"/><default class="late"><position kv="1"/></default></default>
+<worldbody><body name="a"><joint name="a" axis="0 1 0"/><geom type="box" size="0.1 0.2 0.3" mass="3"/></body>
+<body name="b"><joint name="b" axis="0 1 0"/><geom type="box" size="0.1 0.2 0.3" mass="3"/></body></worldbody>
+<actuator><position name="a" class="early" joint="a"/><position name="b" class="late" joint="b"/></actuator>
+</mujoco>"""
 SYSTEMS = {
+    "Later": '<system name="Later"><include file="later.xml" as="r"/></system>',
     "Sprung": '<system name="Sprung"><include file="rotor.urdf" as="r" limits="outputs" effort="limited"/></system>',
     "Wheel": '<system name="Wheel"><include file="wheel.xml" as="r"/></system>',
 }
@@ -29,7 +37,7 @@ SYSTEMS = {
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("unread_in_robots", SYSTEMS, files={"Sprung/rotor.urdf": ROTOR, "Wheel/wheel.xml": WHEEL})
+    build_systems("unread_in_robots", SYSTEMS, files={"Sprung/rotor.urdf": ROTOR, "Wheel/wheel.xml": WHEEL, "Later/later.xml": LATER})
 
 
 @pytest.mark.parametrize("torque", [0.0, 3.0])
@@ -47,6 +55,13 @@ def test_groups_of_actuators_and_geoms(open_fmu):
     instance = open_fmu("Wheel").initialize(controls, tolerance=1e-10)
     instance.run(1.0, 0.1)
     assert instance.get("r.hinge") == pytest.approx(0.1 / 0.1 / 2, rel=1e-9)
+
+
+def test_later_defaults_do_not_change_earlier_classes(open_fmu):
+    """In MuJoCo a class copies the defaults around it where it is defined. 0.1 kg.m2 w' = kp u at rest."""
+    instance = open_fmu("Later").initialize({"r.a_control": 0.1, "r.b_control": 0.1}, tolerance=1e-10)
+    instance.run(1e-3, 1e-3)
+    assert instance.get("r.a", "r.b") == pytest.approx([4 * 0.5e-6, 9 * 0.5e-6], rel=1e-2)
 
 
 def warnings_of(name, text, attributes, folder):
@@ -165,3 +180,35 @@ def test_warnings_of_mjcf(element, attribute, asked, remedy, tmp_path):
             assert not any(name in words for _, words in warnings_of("wheel.xml", text, "", tmp_path))
         nothing = text.replace(attribute, f'{name}="0"')
         assert name == "unheard" or not any(name in words for _, words in warnings_of("wheel.xml", nothing, asked, tmp_path))
+
+
+FREE = """<mujoco model="free">
+<compiler alignfree="{compiler}"/>
+<worldbody><body name="b"><freejoint name="f" {joint}/><geom size="0.1" pos="0.1 0 0"/></body></worldbody>
+<keyframe><key name="k" qpos="1 2 3 {turn}" qvel="0 0 0 0 0 2"/></keyframe>
+</mujoco>"""
+
+
+@pytest.mark.parametrize("turn, expected", [("0 0 0 1e-3", (0, 0, 0, 1)), ("2 0 0 -2", (0.5**0.5, 0, 0, -(0.5**0.5))), ("0 0 0 0", (1, 0, 0, 0))])
+def test_quaternions_of_keyframes_have_the_length_1(turn, expected, tmp_path):
+    """As in MuJoCo, where a quaternion of length 0 does not rotate."""
+    warnings_of("free.xml", FREE.format(compiler="false", joint="", turn=turn), 'keyframe="k"', tmp_path)
+    text = next((tmp_path / "out").rglob("modelDescription.xml")).read_text()
+    start = {name: float(value) for name, value in re.findall(r'name="r\.f_(\w+)"[^>]*>\s*<Real [^>]*start="([^"]*)"', text)}
+    q = [start[f"q{x}"] for x in "wxyz"]
+    assert q == pytest.approx(expected, abs=1e-15), start
+    assert [start["x"], start["y"], start["z"]] == [1, 2, 3]
+
+
+@pytest.mark.parametrize("compiler, joint, warns", [("false", "", False), ("false", 'align="true"', True), ("true", "", True), ("true", 'align="auto"', True), ("true", 'align="false"', False)])
+def test_alignment_of_free_joints(compiler, joint, warns, tmp_path):
+    warnings = warnings_of("free.xml", FREE.format(compiler=compiler, joint=joint, turn="1 0 0 0"), "", tmp_path)
+    assert any("hold for the frame of the body 'b', unlike in MuJoCo" in message for _, message in warnings) == warns, warnings
+
+
+@pytest.mark.parametrize("actuator, unread", [('velocity kv="1" dampratio="1"', "dampratio of <velocity>"), ('motor kp="1"', "kp of <motor>"), ('position kp="1" gainprm="2"', "gainprm of <position>"), ('intvelocity kp="1" actrange="0 1"', None), ('general gainprm="2"', None)])
+def test_attributes_of_other_actuators(actuator, unread, tmp_path):
+    """MuJoCo's schema refuses them."""
+    text = f'<mujoco><worldbody><body name="b"><joint name="j"/><geom size="0.1"/></body></worldbody><actuator><{actuator} joint="j"/></actuator></mujoco>'
+    warnings = [message for _, message in warnings_of("arm.xml", text, "", tmp_path)]
+    assert [message for message in warnings if UNREAD in message] == ([] if unread is None else [f"{unread} {UNREAD} one of the attributes that the reference names"])

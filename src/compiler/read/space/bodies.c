@@ -121,9 +121,11 @@ static void read_mass(struct Reader *reader, xmlNodePtr node, struct Body *body)
 static const struct Body *report_same_name(const struct Reader *reader, const struct Body *body) {
   const struct Body *other = find_body(reader, body->name);
   if (other != NULL)
-    report_error(reader->diagnostics, body->line,
-                 "a particle or body named '%s' is already defined on line %ld; expected another name", body->name,
-                 ((struct NamedBody *)names_find(reader->bodies, body->name))->line);
+    report_error(
+        reader->diagnostics, body->line,
+        "a particle or body named '%s' is already defined on line %ld; expected another name", body->name,
+        noted_line(reader->diagnostics->noted, ((struct NamedBody *)names_find(reader->bodies, body->name))->line)
+            .line);
   return other;
 }
 

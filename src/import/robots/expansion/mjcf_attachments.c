@@ -287,14 +287,27 @@ static bool expand(struct Attachment *attachment, const struct Model *model, con
 static void attach_model(struct Attachment *attachment, struct Model *model, const char *file) {
   const char *body = attribute(model->attach, "body");
   if (!expand(attachment, model, file)) return;
-  if (body != NULL && *body != '\0' && !find_in_worlds(attachment, model, body)) return;
+  if (body != NULL && !find_in_worlds(attachment, model, body)) return;
   model->number = ++*attachment->count;
   copy_bodies(model);
   copy_sections(attachment, model, file);
 }
 
+/* Reports attributes that are not read: without them the bodies would stand elsewhere, or be others. */
+static void check_attributes(const struct Attachment *attachment, xmlNodePtr node) {
+  for (const xmlAttr *at = node->properties; at != NULL; at = at->next) {
+    const char *name = (const char *)at->name;
+    bool is_read = strcmp(name, "model") == 0 || strcmp(name, "body") == 0 || strcmp(name, "prefix") == 0;
+    if (!is_read && name[0] != '-')
+      report_error(attachment->diagnostics, line_of(node),
+                   "%s of <attach> is not read; expected model, body and prefix, and a <frame> around it for its place",
+                   name);
+  }
+}
+
 static void replace(struct Attachment *attachment, xmlNodePtr node) {
   struct Diagnostics *diagnostics = attachment->diagnostics;
+  check_attributes(attachment, node);
   if (!has_attribute(node, "prefix"))
     report_error(diagnostics, line_of(node), "an <attach> has no prefix; expected prefix=\"...\" for its names");
   xmlNodePtr asset = find_asset(attachment, node);

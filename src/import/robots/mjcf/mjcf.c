@@ -58,6 +58,7 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_read_angles(node, &compiler->angles);
   if (has_attribute(node, mjcf_file_note)) compiler->file = attribute(node, mjcf_file_note);
   if (has_attribute(node, "autolimits")) compiler->has_automatic_limits = attribute_is(node, "autolimits", "true");
+  if (has_attribute(node, "alignfree")) compiler->aligns_free = attribute_is(node, "alignfree", "true");
   if (has_attribute(node, "inertiafromgeom"))
     compiler->inertia_from_geoms = (enum InertiaFromGeoms)mjcf_word(mjcf, node, "inertiafromgeom", where);
   mjcf_reject(mjcf, node, "boundmass boundinertia balanceinertia");
@@ -136,6 +137,17 @@ static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *
   if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
 }
 
+/* Warns of a <freejoint> for which MuJoCo moves the frame of the body to its centre of mass and principal axes. */
+static void warn_of_alignment(const struct Mjcf *mjcf, xmlNodePtr node, const char *body) {
+  const char *align = is_element(node, "freejoint") ? attribute(node, "align") : "false";
+  bool is_given = align != NULL && strcmp(align, "auto") != 0;
+  if (is_given ? strcmp(align, "true") != 0 : !mjcf_compiler(mjcf, node)->aligns_free) return;
+  report_warning(mjcf->file.diagnostics, line_of(node),
+                 "start values, keyframes and motors at this free joint hold for the frame of the body '%s', unlike in "
+                 "MuJoCo, which moves it to the centre of mass; expected align=\"false\"",
+                 body);
+}
+
 /* Sets the start of a free joint to the placement of its body, with the quaternion of its roll, pitch and yaw. */
 static void read_free(struct Mjcf *mjcf, struct RobotJoint *joint, const struct Placement *placement) {
   double angles[3], s[3], c[3];
@@ -177,6 +189,7 @@ static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain
   char *child = is_last && !is_offset ? chain->body : format_text("%s_%s", chain->body, name);
   struct RobotJoint *joint = mjcf_add_joint(mjcf, node, type, name, chain->parent, child);
   chain->is_free |= type == FLOATING;
+  if (type == FLOATING) warn_of_alignment(mjcf, node, chain->body);
   if (type == FLOATING) read_free(mjcf, joint, &chain->placement);
   else joint->origin = placement_within(&chain->placement, &anchor);
   if (type == REVOLUTE || type == PRISMATIC) read_single(mjcf, node, joint);

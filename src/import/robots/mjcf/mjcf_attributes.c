@@ -58,11 +58,15 @@ static const struct Attributes table[] = {
     {"equality connect weld", "active anchor body1 body2 class name relpose site1 site2 torquescale", NULL,
      ALWAYS_ACTS},
     {"general motor position velocity damper intvelocity cylinder",
-     "actdim actearly actlimited actrange armature biasprm biastype class cranklength ctrllimited ctrlrange damping "
-     "dampratio delay dynprm dyntype forcelimited forcerange gainprm gaintype gear group inheritrange interp joint kp "
-     "kv "
-     "lengthrange name nsample tendon timeconst user area diameter bias jointinparent site refsite",
+     "armature class cranklength ctrllimited ctrlrange damping delay forcelimited forcerange gear group "
+     "inheritrange interp joint jointinparent lengthrange name nsample refsite site tendon user",
      NULL, ALWAYS_ACTS},
+    {"general", "actdim actearly actlimited actrange biasprm biastype dynprm dyntype gainprm gaintype", NULL,
+     ALWAYS_ACTS},
+    {"position", "dampratio kp kv timeconst", NULL, ALWAYS_ACTS},
+    {"velocity damper", "kv", NULL, ALWAYS_ACTS},
+    {"intvelocity", "actlimited actrange dampratio kp kv", NULL, ALWAYS_ACTS},
+    {"cylinder", "area bias diameter timeconst", NULL, ALWAYS_ACTS},
     {"general motor position velocity damper intvelocity cylinder", "cranksite slidersite body ffrange input velrange",
      "an actuator at a joint, tendon or site, without it", ALWAYS_ACTS},
     {0},

@@ -158,10 +158,11 @@ static bool may_meet(const struct Mjcf *mjcf, const struct MjcfContact *first, c
          !is_carried(mjcf, second, first) && !is_excluded(mjcf, first, second);
 }
 
-static char *name_of(xmlNodePtr node) {
+static char *name_of(const struct Mjcf *mjcf, xmlNodePtr node) {
   if (is_element(node, "worldbody")) return copy_text("the world");
   return has_attribute(node, "name") ? format_text("the %s '%s'", (const char *)node->name, attribute(node, "name"))
-                                     : format_text("the %s on line %ld", (const char *)node->name, line_of(node));
+                                     : format_text("the %s on line %ld", (const char *)node->name,
+                                                   noted_line(mjcf->file.diagnostics->noted, line_of(node)).line);
 }
 
 /* Warns of pairs of geoms that touch in MuJoCo only, by the first pair. */
@@ -169,8 +170,8 @@ static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, con
                          size_t count) {
   const char *others = count > 1 ? format_text(", and %zu other such pair%s", count - 1, count > 2 ? "s" : "") : "";
   report_warning(mjcf->file.diagnostics, line_of(first->node),
-                 "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected %s", name_of(first->node),
-                 name_of(first->body), name_of(second->node), name_of(second->body), others,
+                 "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected %s", name_of(mjcf, first->node),
+                 name_of(mjcf, first->body), name_of(mjcf, second->node), name_of(mjcf, second->body), others,
                  mjcf->file.options->has_self
                      ? "a sphere and another shape, two capsules, or a <contact> with stiffness between two boxes"
                      : "self=\"true\" in an <include>, or --self on the command line");
@@ -218,7 +219,7 @@ static void check_ground(struct Mjcf *mjcf) {
     report_warning(mjcf->file.diagnostics, line_of(mjcf->ground.node),
                    "nothing stands on %s; expected ground=\"true\" in an <include> or --ground on the command line, or "
                    "ground=\"false\" if this is meant",
-                   name_of(mjcf->ground.node));
+                   name_of(mjcf, mjcf->ground.node));
 }
 
 void mjcf_find_contacts(struct Mjcf *mjcf) {

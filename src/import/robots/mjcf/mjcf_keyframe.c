@@ -1,5 +1,6 @@
 #include "robots/mjcf/mjcf_values.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
@@ -58,11 +59,18 @@ static void set_rate(const double q[4], const double omega[3], double rate[4]) {
   }
 }
 
+/* Scales a quaternion to the length 1, as MuJoCo does; one of length 0 does not rotate. */
+static void normalize(double q[4]) {
+  double length = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (int i = 0; i < 4; i++) q[i] = length > 0 ? q[i] / length : i == 0;
+}
+
 static void start_joint(struct RobotJoint *joint, const double *position, const double *velocity) {
   struct JointStart *start = &joint->start;
   size_t first = joint->type == BALL ? 3 : 0;
   size_t count = positions[joint->type], moved = joint->type == FLOATING ? 3 : first == 0 ? count : 0;
   if (position != NULL) memcpy(&start->position[first], position, count * sizeof *position);
+  if (position != NULL && count >= 4) normalize(&start->position[3]);
   if (velocity == NULL) return;
   memcpy(start->velocity, velocity, moved * sizeof *velocity);
   if (count < 4) return;

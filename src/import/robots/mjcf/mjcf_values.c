@@ -36,14 +36,12 @@ static const char *class_of(xmlNodePtr node) {
 
 /*
  * Returns the class from which this one inherits: the enclosing <default>. All outermost <default>s of a file together
- * form the class of all its elements; they are visited from the last one. class: NULL before the first. NULL at the end.
+ * form the class of all its elements; they are visited from the last one. A class inherits from those up to the one in
+ * which it is. class: NULL before the first. NULL at the end.
  */
 static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr element, xmlNodePtr class) {
   size_t model = mjcf_model_of(class != NULL ? class : element);
-  if (class != NULL && class->parent != mjcf->root) {
-    if (class->parent->parent != mjcf->root) return class->parent;
-    class = NULL;
-  }
+  if (class != NULL && class->parent != mjcf->root) return class->parent;
   xmlNodePtr node = class != NULL ? class->prev : mjcf->root->last;
   while (node != NULL && !(is_element(node, "default") && mjcf_model_of(node) == model)) node = node->prev;
   return node;
@@ -152,7 +150,7 @@ static void check_default(struct Mjcf *mjcf, xmlNodePtr node) {
   xmlNodePtr first = find_class(mjcf->root, class);
   if (first != node)
     mjcf_error(mjcf, node, "the class '%s' is already defined on line %ld; expected another name", class,
-               line_of(first));
+               noted_line(mjcf->file.diagnostics->noted, line_of(first)).line);
 }
 
 void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node) {

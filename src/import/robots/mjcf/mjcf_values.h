@@ -35,7 +35,7 @@ struct ContactRule {
 /* What <compiler> says about a file. */
 struct MjcfCompiler {
   struct EulerAngles angles;
-  bool has_automatic_limits;
+  bool has_automatic_limits, aligns_free;
   enum InertiaFromGeoms inertia_from_geoms;
   double inertia_groups[2]; /* geoms of groups in this range have a mass */
   char *mesh_folder;        /* folder of mesh files, relative to the file; NULL for its own */
