@@ -42,7 +42,7 @@ struct FileLine noted_line(const struct FileLines *noted, long line) {
   return line < 0 ? noted->items[-line - 1] : (struct FileLine){.file = noted->own, .line = line};
 }
 
-static struct FileLine file_line(const struct Diagnostics *diagnostics, long line) {
+struct FileLine file_line(const struct Diagnostics *diagnostics, long line) {
   if (line < 0) return noted_line(diagnostics->noted, line);
   return (struct FileLine){diagnostics->file, diagnostics->origin, line};
 }

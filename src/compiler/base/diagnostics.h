@@ -41,6 +41,9 @@ long note_line(const struct Diagnostics *diagnostics, long line);
 /* Returns the file and the line of such a number. */
 struct FileLine noted_line(const struct FileLines *noted, long line);
 
+/* Returns the same with the name of the current file; the line is for a message that names a second place. */
+struct FileLine file_line(const struct Diagnostics *diagnostics, long line);
+
 /* Prints an error to stderr, up to ERROR_LIMIT different ones, and counts it. line is 0 if unknown. */
 void report_error(struct Diagnostics *diagnostics, long line, const char *format, ...)
     __attribute__((format(printf, 3, 4)));

@@ -41,7 +41,7 @@ bool scope_define(struct Scope *scope, const char *name, struct Quantity quantit
   const struct ScopeEntry *taken = find_entry(scope, name);
   if (taken != NULL && taken->line != 0) {
     report_error(scope->diagnostics, line, "the name '%s' is already defined on line %ld; expected another name%s",
-                 name, noted_line(scope->diagnostics->noted, taken->line).line,
+                 name, file_line(scope->diagnostics, taken->line).line,
                  taken->line == line ? ", or an index such as [i] where a <for> repeats it" : "");
     return false;
   }

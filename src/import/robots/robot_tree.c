@@ -96,12 +96,12 @@ static char *enter_name(struct Connection *connection, struct Register *all, str
   if (same != NULL)
     report_error(connection->diagnostics, entry.line,
                  "the %s '%s' is already defined on line %ld; expected another name", all->kind, entry.name,
-                 noted_line(connection->diagnostics->noted, same->line).line);
+                 file_line(connection->diagnostics, same->line).line);
   else if (alike != NULL)
     report_error(
         connection->diagnostics, entry.line,
         "the %s '%s' and '%s' on line %ld both become '%s'; expected names that differ in letters, digits or _",
-        all->kind, entry.name, alike->name, noted_line(connection->diagnostics->noted, alike->line).line, symbol);
+        all->kind, entry.name, alike->name, file_line(connection->diagnostics, alike->line).line, symbol);
   return symbol;
 }
 
@@ -157,7 +157,7 @@ static void connect_links(struct Connection *connection) {
           connection->diagnostics, child->joint->line,
           "the link '%s' is the child of the joint '%s' and of '%s' on line %ld; expected a tree, in which each "
           "link has one parent (a <joint> beside an <include> closes a loop)",
-          child->name, child->joint->name, joint->name, noted_line(connection->diagnostics->noted, joint->line).line);
+          child->name, child->joint->name, joint->name, file_line(connection->diagnostics, joint->line).line);
       continue;
     }
     child->joint = joint;
@@ -177,7 +177,7 @@ static void find_root(struct Connection *connection) {
       report_error(
           connection->diagnostics, link->line,
           "no joint has the link '%s' as its child, nor '%s' on line %ld; expected one such link, the root of all",
-          link->name, robot->root->name, noted_line(connection->diagnostics->noted, robot->root->line).line);
+          link->name, robot->root->name, file_line(connection->diagnostics, robot->root->line).line);
   }
   if (robot->link_count == 0)
     report_error(connection->diagnostics, robot->line, "the robot has no <link>; expected one at least");

@@ -136,8 +136,7 @@ static void declare_shape_contact(struct Reader *reader, xmlNodePtr node) {
     one.unit = copy_text("m");
     one.dimension = unit_of("m");
     append_contact(reader, one);
-    if (!has_shape_friction(node)) continue;
-    declare_friction_of_contact(reader, &one);
+    if (has_shape_friction(node)) declare_friction_of_contact(reader, &one);
   }
 }
 
@@ -158,7 +157,8 @@ void declare_contact(struct Reader *reader, xmlNodePtr node) {
 /* Gives contacts a force beside their constraints if there are frictions in planes, whose forces depend on theirs. */
 static void declare_carried_forces(struct Reader *reader) {
   struct Switches *switches = &reader->model->switches;
-  for (size_t i = 0; i < switches->contact_count && has_planes(switches); i++) {
+  if (!has_planes(switches)) return;
+  for (size_t i = 0; i < switches->contact_count; i++) {
     struct Contact *contact = &switches->contacts[i];
     contact->carried = new_mode(reader, reader->model->constraints.items[contact->constraint].name, "carried");
   }

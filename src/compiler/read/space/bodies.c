@@ -124,8 +124,7 @@ static const struct Body *report_same_name(const struct Reader *reader, const st
     report_error(
         reader->diagnostics, body->line,
         "a particle or body named '%s' is already defined on line %ld; expected another name", body->name,
-        noted_line(reader->diagnostics->noted, ((struct NamedBody *)names_find(reader->bodies, body->name))->line)
-            .line);
+        file_line(reader->diagnostics, ((struct NamedBody *)names_find(reader->bodies, body->name))->line).line);
   return other;
 }
 

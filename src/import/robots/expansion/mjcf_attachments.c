@@ -261,7 +261,7 @@ static void attach_in_worlds(struct Attachment *attachment) {
   }
 }
 
-/* Replaces what a model's file includes, attaches and replicates. Returns false after reporting errors. */
+/* Replaces the <include>, <attach> and <replicate> elements of a model's file. Returns false after reporting errors. */
 static bool expand(struct Attachment *attachment, const struct Model *model, const char *file) {
   struct Diagnostics *diagnostics = attachment->diagnostics;
   struct FileLine place = {model->of_file.file, model->of_file.origin, 0},
@@ -298,7 +298,7 @@ static void check_attributes(const struct Attachment *attachment, xmlNodePtr nod
   for (const xmlAttr *at = node->properties; at != NULL; at = at->next) {
     const char *name = (const char *)at->name;
     bool is_read = strcmp(name, "model") == 0 || strcmp(name, "body") == 0 || strcmp(name, "prefix") == 0;
-    if (!is_read && name[0] != '-')
+    if (!is_read)
       report_error(attachment->diagnostics, line_of(node),
                    "%s of <attach> is not read; expected model, body and prefix, and a <frame> around it for its place",
                    name);
@@ -313,8 +313,7 @@ static void replace(struct Attachment *attachment, xmlNodePtr node) {
   xmlNodePtr asset = find_asset(attachment, node);
   char *path = asset != NULL ? find_file(attachment, asset) : NULL;
   if (path == NULL || !has_attribute(node, "prefix")) return;
-  struct FileLine at = {.file = diagnostics->file, .line = line_of(node)};
-  if (at.line < 0) at = noted_line(diagnostics->noted, at.line);
+  struct FileLine at = file_line(diagnostics, line_of(node));
   struct FileLine place = {path, format_text(" (attached on line %ld of %s)", at.line, at.file), 0};
   xmlDocPtr document = mjcf_load(diagnostics, place);
   if (document == NULL) return;

@@ -13,7 +13,7 @@ extern const char mjcf_file_note[];
 /*
  * Replaces each <attach> in the tree by a <frame> with the body of its file, and adds the sections that belong to it.
  * All names and classes of it have the prefix. Replaces its <include>, <attach> and <replicate> first. Returns the
- * number of attached files. Reports what is missing in them.
+ * number of attached files. Reports missing files, models and names.
  */
 size_t mjcf_attach(xmlNodePtr root, struct Diagnostics *diagnostics);
 

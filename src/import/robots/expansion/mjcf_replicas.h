@@ -14,7 +14,7 @@ struct EulerAngles {
 /* Angles in degrees, about the rotated axes x, y, z. */
 extern const struct EulerAngles usual_angles;
 
-/* Sets what a <compiler> says about angles, as far as it is valid. */
+/* Reads the unit and the sequence of angles from a <compiler>. Missing and wrong ones stay as they are. */
 void mjcf_read_angles(xmlNodePtr compiler, struct EulerAngles *angles);
 
 /*

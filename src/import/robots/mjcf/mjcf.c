@@ -39,7 +39,7 @@ static void check_elements(struct Mjcf *mjcf, xmlNodePtr node) {
   }
 }
 
-/* Sets what holds for the robot's file and for attached ones without a <compiler>. */
+/* Gives the robot's file and the attached ones the usual settings. */
 static void make_compilers(struct Mjcf *mjcf, size_t attached_count) {
   static const struct MjcfCompiler usual = {.inertia_groups = {0, 5}, .has_automatic_limits = true};
   mjcf->attached_count = attached_count;
@@ -189,9 +189,10 @@ static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain
   char *child = is_last && !is_offset ? chain->body : format_text("%s_%s", chain->body, name);
   struct RobotJoint *joint = mjcf_add_joint(mjcf, node, type, name, chain->parent, child);
   chain->is_free |= type == FLOATING;
-  if (type == FLOATING) warn_of_alignment(mjcf, node, chain->body);
-  if (type == FLOATING) read_free(mjcf, joint, &chain->placement);
-  else joint->origin = placement_within(&chain->placement, &anchor);
+  if (type == FLOATING) {
+    warn_of_alignment(mjcf, node, chain->body);
+    read_free(mjcf, joint, &chain->placement);
+  } else joint->origin = placement_within(&chain->placement, &anchor);
   if (type == REVOLUTE || type == PRISMATIC) read_single(mjcf, node, joint);
   else read_several(mjcf, node, joint);
   if (child != chain->body) mjcf_add_link(mjcf, node, child);
@@ -345,9 +346,8 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   for_each(&mjcf, "worldbody", false, read_world);
   set_total_mass(&mjcf);
   for_each(&mjcf, "tendon", true, mjcf_read_tendon);
-  mjcf_set_springs(&mjcf);
   for_each(&mjcf, "actuator", true, mjcf_read_actuator);
-  mjcf_set_dampings(&mjcf);
+  mjcf_set_springs(&mjcf);
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
   if (diagnostics->errors == errors) {

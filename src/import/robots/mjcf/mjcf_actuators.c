@@ -18,7 +18,7 @@ static void read_motor(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actu
   actuator->gain[0] = 1;
 }
 
-/* Reads a servomotor. A positive bias by velocity is a damping ratio until mjcf_set_dampings() replaces it. */
+/* Reads a servomotor. A positive bias by velocity is a damping ratio until mjcf_set_springs() replaces it. */
 static void read_position(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
   actuator->gain[0] = mjcf_number_not_negative(mjcf, node, "kp", 1);
   actuator->bias[1] = -actuator->gain[0];

@@ -162,7 +162,7 @@ static char *name_of(const struct Mjcf *mjcf, xmlNodePtr node) {
   if (is_element(node, "worldbody")) return copy_text("the world");
   return has_attribute(node, "name") ? format_text("the %s '%s'", (const char *)node->name, attribute(node, "name"))
                                      : format_text("the %s on line %ld", (const char *)node->name,
-                                                   noted_line(mjcf->file.diagnostics->noted, line_of(node)).line);
+                                                   file_line(mjcf->file.diagnostics, line_of(node)).line);
 }
 
 /* Warns of pairs of geoms that touch in MuJoCo only, by the first pair. */

@@ -28,18 +28,18 @@ void mjcf_note_spring(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joi
   joint->damping_ratio = values[1];
 }
 
-void mjcf_set_springs(struct Mjcf *mjcf) {
+/* Sets stiffness and damping of the joints with a springdamper. */
+static void set_springs(const struct Mjcf *mjcf, struct Inertia *inertia) {
   const struct Robot *robot = mjcf->file.robot;
-  struct Inertia inertia = {0};
   for (size_t i = 0; i < robot->joint_count; i++) {
     struct RobotJoint *joint = robot->joints[i];
     if (joint->time_constant == 0) continue;
-    if (!robot_find_inertia(robot, &inertia, mjcf->file.diagnostics, joint->line,
+    if (!robot_find_inertia(robot, inertia, mjcf->file.diagnostics, joint->line,
                             format_text("springdamper of the joint '%s'", joint->name), "stiffness and damping"))
       return;
-    double *moments = allocate(inertia.all.count, sizeof *moments);
-    moments[inertia.all.last[robot_link_index(robot, joint->child_name)] - 1] = 1;
-    double moved = robot_reflected_inertia(&inertia, moments), product = joint->time_constant * joint->damping_ratio;
+    double *moments = allocate(inertia->all.count, sizeof *moments);
+    moments[inertia->all.last[robot_link_index(robot, joint->child_name)] - 1] = 1;
+    double moved = robot_reflected_inertia(inertia, moments), product = joint->time_constant * joint->damping_ratio;
     release(moments);
     if (!isfinite(moved)) continue; /* a joint without inertia is reported elsewhere */
     joint->stiffness = moved / (product * product);
@@ -92,9 +92,9 @@ static double *moments_of(const struct Mjcf *mjcf, const struct Velocities *all,
   return moments;
 }
 
-void mjcf_set_dampings(struct Mjcf *mjcf) {
+/* Replaces the damping ratios of actuators by their dampings. */
+static void set_dampings(const struct Mjcf *mjcf, struct Inertia *inertia) {
   const struct Robot *robot = mjcf->file.robot;
-  struct Inertia inertia = {0};
   for (size_t i = 0; i < robot->actuator_count; i++) {
     struct Actuator *actuator = &robot->actuators[i];
     if (!has_ratio(actuator)) continue;
@@ -103,11 +103,17 @@ void mjcf_set_dampings(struct Mjcf *mjcf) {
                    "the third number of biasprm of the actuator '%s' is above 0, a damping ratio, and its gain is "
                    "negative; expected a gain above 0, or the damping itself with its sign",
                    actuator->name);
-    if (!robot_find_inertia(robot, &inertia, mjcf->file.diagnostics, actuator->line,
+    if (!robot_find_inertia(robot, inertia, mjcf->file.diagnostics, actuator->line,
                             format_text("the damping ratio of the actuator '%s'", actuator->name), "the damping kv"))
       return;
-    double *moments = moments_of(mjcf, &inertia.all, actuator), moved = robot_reflected_inertia(&inertia, moments);
+    double *moments = moments_of(mjcf, &inertia->all, actuator), moved = robot_reflected_inertia(inertia, moments);
     release(moments);
     actuator->bias[2] *= isfinite(moved) ? -2 * sqrt(fabs(actuator->gain[0]) * moved) : 0;
   }
+}
+
+void mjcf_set_springs(struct Mjcf *mjcf) {
+  struct Inertia inertia = {0};
+  set_springs(mjcf, &inertia);
+  set_dampings(mjcf, &inertia);
 }

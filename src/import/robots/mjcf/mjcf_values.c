@@ -40,8 +40,8 @@ static const char *class_of(xmlNodePtr node) {
  * which it is. class: NULL before the first. NULL at the end.
  */
 static xmlNodePtr next_class(const struct Mjcf *mjcf, xmlNodePtr element, xmlNodePtr class) {
-  size_t model = mjcf_model_of(class != NULL ? class : element);
   if (class != NULL && class->parent != mjcf->root) return class->parent;
+  size_t model = mjcf_model_of(class != NULL ? class : element);
   xmlNodePtr node = class != NULL ? class->prev : mjcf->root->last;
   while (node != NULL && !(is_element(node, "default") && mjcf_model_of(node) == model)) node = node->prev;
   return node;
@@ -150,7 +150,7 @@ static void check_default(struct Mjcf *mjcf, xmlNodePtr node) {
   xmlNodePtr first = find_class(mjcf->root, class);
   if (first != node)
     mjcf_error(mjcf, node, "the class '%s' is already defined on line %ld; expected another name", class,
-               noted_line(mjcf->file.diagnostics->noted, line_of(first)).line);
+               file_line(mjcf->file.diagnostics, line_of(first)).line);
 }
 
 void mjcf_check_classes(struct Mjcf *mjcf, xmlNodePtr node) {

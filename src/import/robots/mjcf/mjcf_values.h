@@ -32,7 +32,7 @@ struct ContactRule {
   bool is_pair;
 };
 
-/* What <compiler> says about a file. */
+/* The settings of a file, by its <compiler>. */
 struct MjcfCompiler {
   struct EulerAngles angles;
   bool has_automatic_limits, aligns_free;
@@ -63,7 +63,7 @@ struct Mjcf {
 /* Reports an error on the line of an element. */
 #define mjcf_error(mjcf, node, ...) report_error((mjcf)->file.diagnostics, line_of(node), __VA_ARGS__)
 
-/* Returns what <compiler> says about the file of an element. */
+/* Returns the settings of the file that an element belongs to. */
 const struct MjcfCompiler *mjcf_compiler(const struct Mjcf *mjcf, xmlNodePtr node);
 
 /* Returns an attribute of the element or of its classes, innermost first; NULL if none has it. */
@@ -131,9 +131,6 @@ const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char 
 /* <actuator>: forces on joints and tendons that depend on a control; after all joints and tendons. */
 MjcfReader mjcf_read_actuator;
 
-/* Replaces the damping ratios of actuators by their dampings, once all bodies and actuators have been read. */
-void mjcf_set_dampings(struct Mjcf *mjcf);
-
 /*
  * <equality>: joints and tendons that follow others, and kinematic loops; after all bodies, sites and joints. Soft in
  * MuJoCo, exact constraints here.
@@ -148,7 +145,10 @@ void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link);
 /* Notes a joint with the attribute springdamper, of positive numbers: time constant, damping ratio. Reports others. */
 void mjcf_note_spring(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint);
 
-/* Sets stiffness and damping of the noted joints, once all bodies have been read. */
+/*
+ * Sets stiffness and damping of the noted joints, and replaces the damping ratios of actuators by their dampings; after
+ * all bodies and actuators.
+ */
 void mjcf_set_springs(struct Mjcf *mjcf);
 
 /*

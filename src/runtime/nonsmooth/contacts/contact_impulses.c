@@ -58,22 +58,22 @@ double largest_contact_force(const struct Resolution *resolution) {
   return largest;
 }
 
+static void set_contact_and_force(struct Resolution *resolution, size_t contact, bool is_closed, double force) {
+  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
+  resolution_set_mode(resolution, metadata->mode, is_closed ? 1.0 : 0.0);
+  if (metadata->carried != metadata->mode) resolution_set_mode(resolution, metadata->carried, force);
+}
+
 void set_contact(struct Resolution *resolution, size_t contact, bool is_closed) {
-  resolution_set_mode(resolution, resolution->switches->contacts[contact].mode, is_closed ? 1.0 : 0.0);
-  if (carried_force(resolution, contact) != 0.0)
-    resolution_set_mode(resolution, resolution->switches->contacts[contact].carried, 0.0);
+  set_contact_and_force(resolution, contact, is_closed, 0.0);
 }
 
 void contact_carry(struct Resolution *resolution, size_t contact, double force) {
-  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
-  set_contact(resolution, contact, true);
-  if (metadata->carried != metadata->mode) resolution_set_mode(resolution, metadata->carried, force);
+  set_contact_and_force(resolution, contact, true, force);
 }
 
 void contact_press(struct Resolution *resolution, size_t contact, double force) {
-  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
-  resolution_set_mode(resolution, metadata->mode, 0.0);
-  if (metadata->carried != metadata->mode) resolution_set_mode(resolution, metadata->carried, force);
+  set_contact_and_force(resolution, contact, false, force);
 }
 
 void set_friction(struct Resolution *resolution, size_t friction, double mode) {

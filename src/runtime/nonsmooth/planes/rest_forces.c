@@ -159,7 +159,7 @@ static bool fill_column(struct RestForces *forces, size_t column) {
   return exist;
 }
 
-/* Subtracts what the pressure of the contacts makes. */
+/* Subtracts the effect of the pressure on the contacts. */
 static void subtract_pressure(struct RestForces *forces) {
   size_t n = forces->n;
   for (size_t row = 0; row < n; row++)
@@ -216,14 +216,14 @@ static bool accelerates(const struct RestForces *forces, size_t row) {
 
 /* True if a friction accelerates by the solution, or was overcome and is at its limit. */
 static bool begins_to_slip(const struct RestForces *forces, size_t row) {
-  const double *force = &forces->force[row];
   struct PlaneState state = state_of_row(forces, row);
+  if (accelerates(forces, row)) return true;
+  if (*part_of_plane(forces->resolution, &state) != IS_OVERCOME) return false;
   double limit = limit_at(forces, row, forces->impulses.given, forces->impulses.coefficient);
   double rounding = share_at_limit * largest_stiction(forces->resolution),
          response = forces->impulses.delassus[row * (forces->n + 1)];
   double least = (1.0 - least_margin) * limit - rounding - (response > 0.0 ? forces->none / response : 0.0);
-  bool is_overcome = *part_of_plane(forces->resolution, &state) == IS_OVERCOME;
-  return accelerates(forces, row) || (is_overcome && hypot(force[0], force[1]) >= least);
+  return hypot(forces->force[row], forces->force[row + 1]) >= least;
 }
 
 /* Marks the frictions that slip, which have their kinetic limit. True if a limit falls. */
