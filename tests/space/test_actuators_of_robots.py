@@ -36,6 +36,16 @@ CARRIED = f"""<mujoco model="m"><option gravity="0 0 0"/><default><default class
   <intvelocity name="sum" tendon="both" kp="8" dampratio="1" actrange="-1 1"/>
   <general name="pull" tendon="rope" gainprm="8" biastype="affine" biasprm="0 -8 1.5" gear="0.5"/>
 </actuator></mujoco>"""
+# Servos on slides of 2 kg, with ranges of the control from the element, or from the range of the joint.
+RANGED = f"""<mujoco model="m"><option gravity="0 0 0"/><default><joint type="slide" axis="1 0 0" range="-0.5 0.7"/><general ctrlrange="-1 1"/>
+<default class="inherits"><position inheritrange="1"/><default class="own"><position ctrlrange="-2 2"/></default></default></default>
+<worldbody>{"".join(f'<body name="{name}"><joint name="{name}"/>{BOX}</body>' for name in "abcde")}</worldbody><actuator>
+  <position joint="a" inheritrange="0.5"/><position joint="b" class="inherits"/><position joint="c" class="own"/><position joint="d" inheritrange="0"/>
+  <position joint="e" kp="3"/><motor joint="e" gear="2"/><motor name="e_4" joint="e" gear="5"/><velocity joint="e" kv="0.5"/>
+</actuator></mujoco>"""
+# A ball joint that may turn by 60 degrees, between a post and a body with equal moments of inertia; and one with its weight.
+CONE = """<mujoco model="m"><option gravity="{gravity}"/><worldbody><body name="b"><joint name="j" type="ball" range="0 60" damping="{damping}"/>
+<inertial pos="0 0 {arm}" mass="2" diaginertia="0.5 0.5 0.5"/></body></worldbody><keyframe><key name="k" qvel="0.6 -0.8 2"/><key name="far" qpos="0.6 0 0.8 0"/></keyframe></mujoco>"""
 SYSTEMS = {"Driven": "", "Rests": 'friction="sticks"', "Key": 'keyframe="full"'}
 
 
@@ -43,8 +53,11 @@ SYSTEMS = {"Driven": "", "Rests": 'friction="sticks"', "Key": 'keyframe="full"'}
 def built():
     texts = {name: f'<system name="{name}"><include file="m.xml" as="m" {word}/></system>' for name, word in SYSTEMS.items()}
     texts["Carried"] = '<system name="Carried"><include file="m.xml" as="m"/></system>'
+    texts["Ranged"] = '<system name="Ranged"><include file="m.xml" as="m" limits="outputs"/></system>'
+    cones = {"Turned": 'limits="stops" keyframe="k"', "Tilted": 'limits="stops"', "Beyond": 'limits="outputs" keyframe="far"'}
+    texts |= {name: f'<system name="{name}"><include file="m.xml" as="m" {words}/></system>' for name, words in cones.items()}
     texts["Led"] = '<system name="Led"><include file="led.xml" as="m" mocap="inputs" base="floating"/></system>'
-    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED})
+    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED, "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
 
 
 def test_a_filter(open_fmu):
@@ -117,3 +130,50 @@ def test_damping_ratios(open_fmu):
     inverses = {"one": (0.7, 4 * 0.9), "inner": (0.5, 0.9), "sum": (1, 2.1), "pull": (1.5, 0.5**2 * 0.8**2 / 2)}
     expected = {name: 2 * ratio * math.sqrt(8 / inverse) for name, (ratio, inverse) in inverses.items()} | {"own": 0.1}
     assert instance.get(*(f"m.{name}_control_damping" for name in expected)) == pytest.approx(list(expected.values()), rel=1e-14)
+
+
+def test_ranges_of_controls(open_fmu):
+    """The innermost of inheritrange and ctrlrange holds, as in MuJoCo 4, which was asked for these ranges; m w' = kp u at rest."""
+    controls = {f"m.{name}_control": 9.0 for name in "abcd"}
+    instance = open_fmu("Ranged").initialize(controls, tolerance=1e-10)
+    instance.run(1e-3, 1e-3)
+    upper = {"a": 0.1 + 0.3, "b": 0.7, "c": 2.0, "d": 1.0}
+    assert [instance.get(f"m.{name}") for name in upper] == pytest.approx([limit / 2 * 0.5e-6 for limit in upper.values()], rel=1e-5)
+
+
+def test_actuators_without_names_at_one_joint(open_fmu):
+    """Further ones have a number behind the name of the joint. 2 kg w' = 3 u1 + 2 u2 + 5 u3 + 0.5 u4 at rest."""
+    controls = {"m.e_control": 0.1, "m.e_2_control": 0.2, "m.e_4_control": 0.4, "m.e_3_control": 0.8}
+    instance = open_fmu("Ranged").initialize(controls, tolerance=1e-10)
+    instance.run(1e-3, 1e-3)
+    assert instance.get("m.e") == pytest.approx((0.3 + 0.4 + 2 + 0.4) / 2 * 0.5e-6, rel=1e-3)
+
+
+def rotation(instance):
+    """The angle of the ball joint from its quaternion, in degrees."""
+    w, *axis = instance.get("m.j_qw", "m.j_qx", "m.j_qy", "m.j_qz")
+    return math.degrees(2 * math.atan2(math.hypot(*axis), abs(w)))
+
+
+def test_the_range_of_a_ball_joint(open_fmu):
+    """About a fixed axis the angle grows by its velocity to the limit, and stays there."""
+    instance = open_fmu("Turned").initialize(tolerance=1e-10)
+    hit = math.radians(60) / math.sqrt(0.6**2 + 0.8**2 + 2**2)
+    instance.run(0.9 * hit, 0.1 * hit)
+    assert rotation(instance) == pytest.approx(0.9 * 60, abs=1e-7)
+    instance = open_fmu("Turned").initialize(tolerance=1e-10)
+    instance.run(2.0, 0.1)
+    assert rotation(instance) == pytest.approx(60, abs=1e-7)
+
+
+def test_a_ball_joint_rests_at_its_range(open_fmu):
+    """A weight along x turns the body about y to 60 degrees. The torque m g l cos(60) is the force of the gap times its slope by the angle, sin(60)/2."""
+    instance = open_fmu("Tilted").initialize(tolerance=1e-9)
+    instance.run(30.0, 1.0)
+    assert instance.get("m.j_qw", "m.j_qx", "m.j_qy", "m.j_qz") == pytest.approx([math.cos(math.pi / 6), 0, -0.5, 0], abs=1e-7)
+    assert instance.get("m.j_max.force") == pytest.approx(2 * 9.81 * 0.5 * 0.5 / (math.sin(math.pi / 3) / 2), rel=1e-6)
+
+
+def test_excess_of_the_range_of_a_ball_joint(open_fmu):
+    instance = open_fmu("Beyond").initialize()
+    assert instance.get("m.j_beyond") == pytest.approx(2 * math.acos(0.6) - math.pi / 3, abs=1e-12)

@@ -32,11 +32,16 @@ SET = '><parameter name="ground_friction" start="0.25"/></include>'
 SYSTEMS = {"Slope": SYSTEM.format("Slope", "/>"), "Rough": SYSTEM.format("Rough", "/>"), "Same": SYSTEM.format("Same", SET)}
 SYSTEMS["Touch"] = '<system name="Touch"><include file="touch.xml" as="r" self="true"/></system>'
 
+SYSTEMS["Walled"] = '<system name="Walled"><include file="walled.xml" as="r" ground="true" self="true"/></system>'
 SYSTEMS["Pile"] = """<system name="Pile"><include file="pile.xml" as="r" ground="true"/>
   <contact name="pile" between="r.high_collision1" and="r.low_collision1" stiffness="1e4" damping="1" friction="0.5"/></system>"""
 PILE = """<mujoco model="pile"><worldbody><geom type="plane" size="1 1 1"/>
 <body name="low" pos="0 0 0.1"><freejoint/><geom type="box" size="0.2 0.2 0.1" mass="2"/></body>
 <body name="high" pos="0 0 0.31"><freejoint/><geom type="box" size="0.1 0.1 0.1" mass="1"/></body></worldbody></mujoco>"""
+# A ball in a corner of three planes, two of which are walls.
+WALLED = """<mujoco model="walled"><option gravity="4 3 -9.81"/><default><geom type="plane" size="1 1 1" friction="0"/></default><worldbody>
+<geom/><geom name="wall" pos="0.5 0 0" euler="0 -90 0"/><frame pos="0 0.4 0"><geom zaxis="0 -1 0"/></frame>
+<body name="b" pos="0 0 0.1"><freejoint/><geom type="sphere" size="0.1" mass="2" friction="0"/></body></worldbody></mujoco>"""
 # Two spheres on each other on a table, a capsule across another one, and two spheres that touch nothing. One slides with a part on it.
 TOUCH = """<mujoco model="touch"><default><joint type="slide" axis="0 0 1"/></default><worldbody>
 <geom type="box" size="1 1 0.5" pos="0 0 -0.5"/><geom type="capsule" fromto="3 -1 0 3 1 0" size="0.1"/>
@@ -52,7 +57,7 @@ TOUCH = """<mujoco model="touch"><default><joint type="slide" axis="0 0 1"/></de
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    files = {"Slope/slope.xml": SLOPE, "Rough/slope.xml": ROUGH, "Same/slope.xml": SLOPE, "Touch/touch.xml": TOUCH, "Pile/pile.xml": PILE}
+    files = {"Slope/slope.xml": SLOPE, "Rough/slope.xml": ROUGH, "Same/slope.xml": SLOPE, "Touch/touch.xml": TOUCH, "Pile/pile.xml": PILE, "Walled/walled.xml": WALLED}
     build_systems("contacts_of_mjcf", SYSTEMS, files=files)
 
 
@@ -110,6 +115,31 @@ def test_boxes_touch_by_a_contact_of_the_system(open_fmu):
     assert instance.get("r.high_z") - instance.get("r.low_z") == pytest.approx(0.2 - G / 4e4, abs=1e-6)
 
 
+def test_further_planes_of_the_world_are_walls(open_fmu):
+    """The first plane is the ground. At rest each plane bears the weight along its normal, m g/k deep."""
+    instance = open_fmu("Walled").initialize(tolerance=1e-8)
+    instance.run(12.0, 0.5)
+    forces = instance.get("r.world_collision1_on_b_collision1.force", "r.world_collision2_on_b_collision1.force", "r.b_ground1.force")
+    assert forces == pytest.approx([2 * 4, 2 * 3, 2 * G], rel=1e-4)
+    assert instance.get("r.b_x", "r.b_y", "r.b_z") == pytest.approx([0.4 + 8 / instance.get("r.self_stiffness"), 0.3 + 6 / instance.get("r.self_stiffness"), 0.1 - 2 * G / instance.get("r.ground_stiffness")], abs=1e-6)
+
+
+@pytest.mark.parametrize("own, names, warns", [("", {"r.stand_collision1_on_ball_collision1"}, True), ("ball", {"own"}, True), ("rod", {"r.stand_collision1_on_ball_collision1", "own"}, False)])
+def test_own_contacts_replace_those_of_the_file(own, names, warns, tmp_path):
+    """A <contact> beside the <include> leaves no second one between its shapes, and no warning about them."""
+    text = """<mujoco><worldbody><body name="stand"><geom name="table" type="box" size="1 1 0.1"/></body>
+<body name="ball" pos="0 0 0.2"><freejoint/><geom size="0.1"/></body>
+<body name="rod" pos="0.5 0 0.2"><freejoint/><geom name="stick" type="capsule" size="0.1" fromto="0 0 0 0 0.5 0" contype="2"/></body></worldbody></mujoco>"""
+    contact = f'<contact name="own" between="r.{own}_collision1" and="r.stand_collision1" stiffness="1e4"/>' if own else ""
+    (tmp_path / "table.xml").write_text(text.replace('contype="2"', 'contype="2" conaffinity="3"').replace('size="1 1 0.1"', 'size="1 1 0.1" contype="3"').replace('<geom size', '<geom contype="4" conaffinity="1" size'))
+    (tmp_path / "system.xml").write_text(f'<system name="S"><include file="table.xml" as="r" self="true" ground="false"/>{contact}</system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    message = "the geom 'table' of the body 'stand' does not touch the geom 'stick' of the body 'rod', unlike in MuJoCo; expected <contact between=\"r.stand_collision1\" and=\"r.rod_collision1\" stiffness=\"...\"/> in a <system> that includes the robot"
+    assert result.returncode == 0 and (message in result.stderr) == warns, result.stderr
+    forces = re.findall(r'name="([\w.]+)\.force"', (tmp_path / "out" / "modelDescription.xml").read_text())
+    assert {name for name in forces if not name.endswith("norm")} == names
+
+
 def test_shapes_of_a_urdf_touch_each_other(tmp_path):
     """Links that a joint connects do not touch; other pairs of which one is a sphere, or both are capsules, do."""
     link = '<link name="{0}"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>{1}</link>'
@@ -119,7 +149,7 @@ def test_shapes_of_a_urdf_touch_each_other(tmp_path):
     joints = [f'<joint name="{one}{other}" type="{kind}"><parent link="{one}"/><child link="{other}"/><axis xyz="0 0 1"/></joint>' for one, other, kind in (("stand", "a", "continuous"), ("a", "b", "continuous"), ("b", "c", "fixed"))]
     (tmp_path / "arm.urdf").write_text(f'<robot name="arm">{"".join(links + joints)}</robot>')
     result = lagc("arm.urdf", "-o", "out", "--robot", "self=true", cwd=tmp_path)
-    assert result.returncode == 0 and "1 pair of shapes do not touch, such as the box of the link 'stand' and the box of 'b'; expected a sphere and another shape" in result.stderr
+    assert result.returncode == 0 and "1 pair of shapes does not touch, such as the box of the link 'stand' and the box of 'b'; expected <contact between=\"stand_collision1\" and=\"b_collision1\" stiffness=\"...\"/> in a <system>" in result.stderr
     names = set(re.findall(r'name="(\w+_on_\w+)\.force"', (tmp_path / "out" / "modelDescription.xml").read_text()))
     assert names == {"stand_collision2_on_b_collision1", "stand_collision1_on_c_collision1", "stand_collision2_on_c_collision1"}
 

@@ -154,18 +154,11 @@ def test_mjcf():
         instance.free()
 
 
-@pytest.mark.parametrize(
-    "scene, body, expected",
-    [
-        (SCENE.format(SECOND), "rod", "it in the <worldbody>, of which one is the ground"),
-        (SCENE.format("").replace("<frame", SECOND + "<frame"), "world", "one plane, which is the ground"),
-    ],
-)
-def test_planes_of_mjcf_that_touch_nothing(tmp_path, scene, body, expected):
-    (tmp_path / "eggs.xml").write_text(scene)
+def test_planes_of_moving_bodies_touch_nothing(tmp_path):
+    (tmp_path / "eggs.xml").write_text(SCENE.format(SECOND))
     (tmp_path / "system.xml").write_text(STANDING)
     found = subprocess.run([LAGC, tmp_path / "system.xml", "-o", tmp_path / "out"], capture_output=True, text=True)
-    assert found.returncode == 0 and f"a <geom> of type plane of the body '{body}' touches nothing; expected {expected}" in found.stderr
+    assert found.returncode == 0 and "a <geom> of type plane of the body 'rod' touches nothing; expected it in the <worldbody>" in found.stderr
 
 
 @pytest.mark.parametrize(

@@ -442,3 +442,4 @@ def test_centres_that_come_inside(kind, method, open_fmu):
         instance.run(1, 0.05)
     stopped = [text for _, _, text in instance.messages if " stopped at time " in text][0]
     assert float(stopped.split(" stopped at time ")[1].split()[0]) == pytest.approx(math.sqrt(0.2 / g) + after, abs=1e-6)
+    assert stopped.endswith("; retrying will not help; restore an earlier state, and follow the last message")

@@ -212,3 +212,36 @@ def test_attributes_of_other_actuators(actuator, unread, tmp_path):
     text = f'<mujoco><worldbody><body name="b"><joint name="j"/><geom size="0.1"/></body></worldbody><actuator><{actuator} joint="j"/></actuator></mujoco>'
     warnings = [message for _, message in warnings_of("arm.xml", text, "", tmp_path)]
     assert [message for message in warnings if UNREAD in message] == ([] if unread is None else [f"{unread} {UNREAD} one of the attributes that the reference names"])
+
+
+# A hinge whose body is balanced by its motors, with a limit; the motors; and the geoms of the world.
+BALANCED = """<mujoco model="balanced"><worldbody>{world}
+<body name="b" gravcomp="{share}"><joint name="j" axis="0 1 0" actuatorgravcomp="{by}" {joint}/><geom size="0.1" pos="0.3 0 0"/></body>
+</worldbody><actuator>{motors}</actuator></mujoco>"""
+WEIGHED = {"world": "", "share": 1, "by": "true", "joint": "", "motors": '<motor joint="j"/>'}
+FIELD = '<geom type="hfield"/>'
+MORE_CASES = {
+    "a motor that balances": ({}, "", None),
+    "no motor that balances": ({"motors": ""}, "", f'actuatorgravcomp="true" in a file without actuators {UNREAD} gravcomp="0" of the <body>s, as nothing balances them in MuJoCo'),
+    "no motor and no balance": ({"motors": "", "share": 0}, "", None),
+    "a balance without motors": ({"motors": "", "by": "false"}, "", None),
+    "a limited motor that balances": ({"joint": 'actuatorfrcrange="-1 1"'}, "", f'the limit of actuatorgravcomp by actuatorfrcrange {UNREAD} actuatorgravcomp="false", or no actuatorfrcrange'),
+    "a field": ({"world": FIELD}, "", "a <geom> of type hfield of the body 'world' touches nothing: expected a sphere,"),
+    "a field that is meant to be passed": ({"world": FIELD}, 'ground="false"', None),
+    "friction": ({"joint": 'frictionloss="1"'}, "", "creep replaces sticking by the friction of the joint 'j'; expected friction=\"sticks\", or \"creeps\" if this is meant, in an <include>"),
+    "friction that is meant": ({"joint": 'frictionloss="1"'}, 'friction="creeps"', None),
+    "start beyond a stop": ({"joint": 'range="30 50"'}, 'limits="stops"', "limits replace the start values, which are beyond them, of the joint 'j'; expected <coordinate name=\"...\" start=\"...\"/> in an <include>"),
+    "start beyond a limit": ({"joint": 'range="30 50"'}, 'limits="outputs"', None),
+    "start of the include": ({"joint": 'range="30 50"'}, 'limits="stops"><coordinate name="j" start="0.6"/></include', None),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("change, words, message", MORE_CASES.values(), ids=MORE_CASES)
+def test_features_that_are_not_requested(change, words, message, tmp_path):
+    text = BALANCED.format(**(WEIGHED | change))
+    (tmp_path / "arm.xml").write_text(text)
+    (tmp_path / "system.xml").write_text(f'<system name="S"><include file="arm.xml" as="r" {words}{"" if "<" in words else "/"}></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    warnings = re.findall(r"^arm\.xml:\d+: warning: (.*)", result.stderr, re.MULTILINE)
+    assert [warning[: len(message or "")] for warning in warnings] == ([message] if message else [])

@@ -255,10 +255,29 @@ static void write_free(const struct Writer *writer, const struct RobotJoint *joi
   if (joint->friction > 0) write_free_friction(writer, joint);
 }
 
+/*
+ * Limits the angle of a rotation. The vector part of its quaternion has the length sin(angle/2). The gap is a difference
+ * of squares, which is smooth where the joint is not rotated.
+ */
+static void write_cone(const struct Writer *writer, const struct RobotJoint *joint) {
+  if (isnan(joint->upper) || joint->upper >= M_PI) return;
+  const char *name = joint->symbol, *largest = number(joint->upper), *square = number(pow(sin(joint->upper / 2), 2));
+  char *rotated = format_text("(%s_qx^2 + %s_qy^2 + %s_qz^2)", name, name, name);
+  if (writer->options->has_stops)
+    write_element(writer, "contact", "name", format_text("%s_max", name), "unit", "1", "gap",
+                  format_text("%s - %s", square, rotated), NULL);
+  else
+    write_output(
+        writer, format_text("%s_beyond", name), "rad",
+        format_text("if(%s > %s, 2*atan2(sqrt%s, abs(%s_qw)) - %s, 0)", rotated, square, rotated, name, largest),
+        format_text("angle of %s less its limit, %s, where it is beyond it", name, largest));
+}
+
 static void write_ball(const struct Writer *writer, const struct RobotJoint *joint, const struct JointStart *start,
                        const char *description) {
   write_components(writer, joint->symbol, 3, start, description);
   write_rotation_energy(writer, joint, "");
+  write_cone(writer, joint);
 }
 
 /* The inputs of a prescribed motion: a position, and rotations about fixed axes in the order x, y, z. */

@@ -156,11 +156,13 @@ static bool may_meet(const struct RobotLink *first, const struct RobotLink *seco
 void find_pairs(struct Robot *robot, const struct RobotOptions *options, const struct Diagnostics *diagnostics) {
   struct ShapePair other = {.links = {NULL}};
   size_t others = 0;
+  char *names[2];
   for (struct RobotLink *first = options->has_self ? robot->root : NULL; first != NULL; first = first->next)
     for (struct RobotLink *second = first->next; second != NULL; second = second->next)
       for (size_t i = 0; i < first->collision_count && may_meet(first, second); i++)
         for (size_t j = 0; j < second->collision_count; j++) {
           struct ShapePair pair = {{first, second}, {i, j}, NAN, first->collisions[i].line};
+          if (touch_in_system(options, &pair, names)) continue;
           if (shapes_can_touch(&first->collisions[i], &second->collisions[j])) add_shape_pair(robot, &pair);
           else if (others++ == 0) other = pair;
         }
@@ -168,9 +170,9 @@ void find_pairs(struct Robot *robot, const struct RobotOptions *options, const s
   const char *types[2];
   for (int i = 0; i < 2; i++) types[i] = other.links[i]->collisions[other.indices[i]].type;
   report_warning(diagnostics, other.line,
-                 "%zu pair%s of shapes do not touch, such as the %s of the link '%s' and the %s of '%s'; expected a "
-                 "sphere and another shape, two capsules, or a <contact> with stiffness between two boxes",
-                 others, others > 1 ? "s" : "", types[0], other.links[0]->name, types[1], other.links[1]->name);
+                 "%zu pair%s of shapes do%s not touch, such as the %s of the link '%s' and the %s of '%s'; expected %s",
+                 others, others > 1 ? "s" : "", others > 1 ? "" : "es", types[0], other.links[0]->name, types[1],
+                 other.links[1]->name, how_to_touch(options, &other));
 }
 
 /* Returns the coefficient that all pairs have; NAN if they differ. */

@@ -233,19 +233,40 @@ static void warn_of_limits(const struct Diagnostics *diagnostics, const struct P
                  what, common->kind, common->name, and, attribute, option);
 }
 
+static bool starts_beyond(const struct RobotJoint *joint) {
+  double start = joint->start.position[0];
+  return joint_is_single(joint) && joint->leader == joint && (start < joint->lower || start > joint->upper);
+}
+
+/* True if the <include> gives the coordinate a start value. */
+static bool has_own_start(const struct RobotOptions *options, const char *coordinate) {
+  xmlNodePtr node = options->include != NULL ? options->include->children : NULL;
+  while (node != NULL && !(is_element(node, "coordinate") && attribute_is(node, "name", coordinate))) node = node->next;
+  return node != NULL && has_attribute(node, "start");
+}
+
 static void check_limits(const struct Robot *robot, const struct RobotOptions *options,
                          const struct Diagnostics *diagnostics) {
-  struct PropertyCount ranges = {.count = 0}, efforts = {.count = 0};
+  struct PropertyCount ranges = {.count = 0}, efforts = {.count = 0}, frictions = {.count = 0}, starts = {.count = 0};
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct RobotJoint *joint = robot->joints[i];
     if (!isnan(joint->lower)) count_one(&ranges, "joint", joint->name, joint->line);
+    if (joint->friction > 0) count_one(&frictions, "joint", joint->name, joint->line);
+    if (options->has_stops && starts_beyond(joint) && !has_own_start(options, joint->symbol))
+      count_one(&starts, "joint", joint->name, joint->line);
     if (joint->has_motor && joint_is_single(joint) && !isnan(joint->effort))
       count_one(&efforts, "joint", joint->name, joint->line);
   }
   for (size_t i = 0; i < robot->tendon_count; i++)
     if (!isnan(robot->tendons[i].lower)) count_one(&ranges, "tendon", robot->tendons[i].name, robot->tendons[i].line);
+  for (size_t i = 0; i < robot->tendon_count; i++)
+    if (robot->tendons[i].friction > 0) count_one(&frictions, "tendon", robot->tendons[i].name, robot->tendons[i].line);
   warn_of_limits(diagnostics, &ranges, options->says_limits, "motion is not stopped at the limits",
                  "limits=\"stops\", or \"outputs\" if this is meant,", "limits stops");
+  warn_of_limits(diagnostics, &frictions, options->says_friction, "creep replaces sticking by the friction",
+                 "friction=\"sticks\", or \"creeps\" if this is meant,", "friction sticks");
+  warn_of_limits(diagnostics, &starts, false, "limits replace the start values, which are beyond them,",
+                 "<coordinate name=\"...\" start=\"...\"/>", "keyframe NAME");
   warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may exceed the effort",
                  "effort=\"limited\", or \"unlimited\" if this is meant,", "effort limited");
 }

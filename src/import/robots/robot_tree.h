@@ -5,15 +5,10 @@
 
 #include "base/diagnostics.h"
 #include "robots/description/robot.h"
+#include "robots/description/robot_symbols.h"
 
 /* Sets the fields marked as results of robot_connect() in robot.h. Returns false after reporting errors. */
 bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);
-
-/*
- * Returns the name as an identifier of the language: letters, digits and _, with no digit first. A letter of another
- * alphabet becomes u and its code point.
- */
-char *robot_symbol(const char *name);
 
 /* Returns the link of this name; NULL after reporting that there is none. what: where the name is used. */
 struct RobotLink *robot_link(const struct Robot *robot, const char *name, const char *what,

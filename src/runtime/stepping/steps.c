@@ -44,6 +44,7 @@ static const char too_many_steps[] = "maxSteps of <solver> is reached in one com
                                      "step, or a larger maxSteps";
 static const char usual_remedy[] = "retrying will not help; restore an earlier state, and use a larger tolerance, "
                                    "other parameters or other coordinates";
+static const char explained_remedy[] = "retrying will not help; restore an earlier state, and follow the last message";
 
 /*
  * Brings the solver to the start of the step. It continues its last step if that contains the start and nothing was set
@@ -183,12 +184,18 @@ static void log_weakest(struct Instance *instance, double time) {
                 time, name);
 }
 
-/* Logs that the solver stopped, with advice. For endless events it names no other solver, since none would help. */
+/*
+ * Logs that the solver stopped, with advice. After endless events, or if the laws of events have explained the stop, it
+ * names no other solver, since none would help.
+ */
 static void log_stop(const struct Instance *instance, const struct CommunicationStep *step, const char *reason,
-                     bool ends_at_event, double reached) {
+                     bool ends_at_event, bool is_explained, double reached) {
   const struct Solver *solver = lagrangian.solver;
-  const char *function = instance->limited_by, *others = ends_at_event ? NULL : solver->alternatives;
-  const char *remedy = ends_at_event ? "" : solver->remedy != NULL ? solver->remedy : usual_remedy;
+  const char *function = instance->limited_by, *others = ends_at_event || is_explained ? NULL : solver->alternatives;
+  const char *remedy = ends_at_event            ? ""
+                       : is_explained           ? explained_remedy
+                       : solver->remedy != NULL ? solver->remedy
+                                                : usual_remedy;
   log_message(instance, STATUS_DISCARD, "%s stopped at time %.15g before %.15g: %s%s%s%s%s%s%s", solver->name, reached,
               step->end, reason, function != NULL && !ends_at_event ? ", by " : "",
               function != NULL && !ends_at_event ? function : "", ends_at_event ? "" : "; ", remedy,
@@ -205,12 +212,13 @@ static enum StepResult stop(struct Instance *instance, const struct Communicatio
   if (solver_project(instance, reached, instance->state) != NULL && !solver_take_state(instance, reached))
     return STEP_FAILED;
   if (instance->singular != 0) log_singularity(instance, STATUS_DISCARD, reached);
-  bool is_explained = ends_at_event || reason == too_much_work || reason == too_many_steps ||
-                      (laws != NULL && laws->explain_stop(instance, reached));
+  bool is_explained = ends_at_event || reason == too_much_work || reason == too_many_steps;
+  bool is_of_events = !is_explained && laws != NULL && laws->explain_stop(instance, reached);
+  is_explained |= is_of_events;
   if (!is_explained && violated_constraint > 0)
     log_violated(instance, STATUS_DISCARD, reached, violated_constraint - 1);
   if (lagrangian.constraints.projection != NULL && !is_explained) log_weakest(instance, reached);
-  log_stop(instance, step, reason, ends_at_event, reached);
+  log_stop(instance, step, reason, ends_at_event, is_of_events, reached);
   instance->fmu_state->changed = CHANGED_VALUES;
   return STEP_PARTIAL;
 }

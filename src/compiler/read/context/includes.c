@@ -119,6 +119,7 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
     struct Diagnostics local = {.file = source->file, .origin = source->origin, .noted = reader->diagnostics->noted};
     known = allocate(1, sizeof *known);
     struct RobotOptions options = robot_options_of(texts);
+    options.include = source->include;
     known->document = load_system(source, &options, &local);
     reader->diagnostics->errors += local.errors;
     names_set(reader->includes->documents, key, known);

@@ -36,6 +36,7 @@ struct RobotOptions robot_options_of(const char *const texts[ROBOT_WORDS]) {
                                .has_ground = ground != NULL && strcmp(ground, "false") != 0,
                                .says_ground = ground != NULL,
                                .says_limits = texts[LIMITS_WORD] != NULL,
+                               .says_friction = texts[FRICTION_WORD] != NULL,
                                .says_effort = texts[EFFORT_WORD] != NULL,
                                .ground_contact = ground != NULL && strcmp(ground, "true") != 0 ? ground : NULL,
                                .has_self = says(texts[SELF_WORD], "true"),

@@ -4,21 +4,24 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include <libxml/tree.h>
+
 #include "base/diagnostics.h"
 
 /* The options; zeros for none. */
 struct RobotOptions {
-  bool floats;                                /* the root link moves freely; else it is fixed in the base */
-  bool has_stops;                             /* limits are stops; else outputs report violations */
-  bool sticks;                                /* joint friction is dry; else it is regularized and allows creep */
-  bool has_ground;                            /* shapes of links touch a plane */
-  bool has_self;                              /* shapes of links touch each other and static ones */
-  bool says_ground, says_limits, says_effort; /* the <include> has these attributes, with any value */
-  const char *ground_contact;                 /* names of these links, separated by blanks; NULL for all that move */
-  bool inputs_move_mocap;                     /* bodies with mocap follow inputs; else they stand still */
-  bool is_effort_limited;                     /* motors are limited by their effort */
-  const char *keyframe;                       /* name of the MJCF keyframe for start values; NULL for the default */
-  const char *tool; /* link with outputs of its position and velocity; NULL for the only leaf */
+  bool floats;     /* the root link moves freely; else it is fixed in the base */
+  bool has_stops;  /* limits are stops; else outputs report violations */
+  bool sticks;     /* joint friction is dry; else it is regularized and allows creep */
+  bool has_ground; /* shapes of links touch a plane */
+  bool has_self;   /* shapes of links touch each other and static ones */
+  bool says_ground, says_limits, says_friction, says_effort; /* has these attributes, with any value */
+  const char *ground_contact; /* names of these links, separated by blanks; NULL for all that move */
+  bool inputs_move_mocap;     /* bodies with mocap follow inputs; else they stand still */
+  bool is_effort_limited;     /* motors are limited by their effort */
+  const char *keyframe;       /* name of the MJCF keyframe for start values; NULL for the default */
+  const char *tool;           /* link with outputs of its position and velocity; NULL for the only leaf */
+  xmlNodePtr include;         /* NULL on the command line */
 };
 
 /* The attributes of an <include> for these options. */

@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "robots/description/robot_symbols.h"
+#include "xml/nodes.h"
 
 static bool is_type(const struct Collision *shape, const char *type) {
   return strcmp(shape->type, type) == 0;
@@ -14,9 +16,44 @@ static bool is_sphere_beside(const struct Collision *first, const struct Collisi
                                       is_type(second, "box") || is_type(second, "cylinder"));
 }
 
+/* True if one shape is a plane, and the other one is not. */
+static bool has_plane(const struct Collision *first, const struct Collision *second) {
+  return is_type(first, "plane") != is_type(second, "plane");
+}
+
 bool shapes_can_touch(const struct Collision *first, const struct Collision *second) {
-  return is_sphere_beside(first, second) || is_sphere_beside(second, first) ||
+  return has_plane(first, second) || is_sphere_beside(first, second) || is_sphere_beside(second, first) ||
          (is_type(first, "capsule") && is_type(second, "capsule"));
+}
+
+/* True if a <contact> with stiffness between these shapes is possible: of two boxes, or of a capsule and a box. */
+static bool is_costly(const struct Collision *first, const struct Collision *second) {
+  return (is_type(first, "box") && (is_type(second, "box") || is_type(second, "capsule"))) ||
+         (is_type(first, "capsule") && is_type(second, "box"));
+}
+
+bool touch_in_system(const struct RobotOptions *options, const struct ShapePair *pair, char *names[2]) {
+  const char *prefix = options->include != NULL ? attribute(options->include, "as") : NULL;
+  for (int k = 0; k < 2; k++)
+    names[k] = format_text("%s%s%s_collision%zu", prefix != NULL ? prefix : "", prefix != NULL ? "." : "",
+                           robot_part_symbol(pair->links[k]->name), pair->indices[k] + 1);
+  xmlNodePtr node = options->include != NULL ? options->include->parent->children : NULL;
+  for (; node != NULL; node = node->next)
+    if (is_element(node, "contact") &&
+        ((attribute_is(node, "between", names[0]) && attribute_is(node, "and", names[1])) ||
+         (attribute_is(node, "between", names[1]) && attribute_is(node, "and", names[0]))))
+      return true;
+  return false;
+}
+
+char *how_to_touch(const struct RobotOptions *options, const struct ShapePair *pair) {
+  const struct Collision *shapes[2];
+  char *names[2];
+  for (int k = 0; k < 2; k++) shapes[k] = &pair->links[k]->collisions[pair->indices[k]];
+  if (!is_costly(shapes[0], shapes[1])) return copy_text("a sphere or a plane as one of them");
+  touch_in_system(options, pair, names);
+  return format_text("<contact between=\"%s\" and=\"%s\" stiffness=\"...\"/> in a <system> that includes the robot",
+                     names[0], names[1]);
 }
 
 void add_shape_pair(struct Robot *robot, const struct ShapePair *pair) {

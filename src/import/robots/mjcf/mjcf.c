@@ -127,6 +127,18 @@ static void read_single(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *j
   joint->origin = placement_within(&joint->origin, &back);
 }
 
+/* Sets the largest angle by which a ball joint may be rotated. */
+static void read_cone(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
+  double limits[2];
+  mjcf_limits(mjcf, node, "range", "limited", limits);
+  if (isnan(limits[0])) return;
+  if (limits[0] != 0)
+    mjcf_error(mjcf, node, "range of the ball joint '%s' begins at %g; expected 0 and the largest angle", joint->name,
+               limits[0]);
+  joint->lower = 0;
+  joint->upper = limits[1] * mjcf_compiler(mjcf, node)->angles.unit;
+}
+
 /* Reads a joint with several coordinates: isotropic damping and armature. Reports features of single coordinates. */
 static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
   mjcf_reject(mjcf, node, "stiffness springdamper actuatorfrcrange");
@@ -134,7 +146,29 @@ static void read_several(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *
   joint->armature = mjcf_number_not_negative(mjcf, node, "armature", 0);
   if (joint->type == FLOATING) joint->friction = mjcf_number_not_negative(mjcf, node, "frictionloss", 0);
   else mjcf_reject(mjcf, node, "frictionloss");
-  if (joint->type == BALL && mjcf_text(mjcf, node, "range") != NULL) leave_out(&mjcf->file, "range of ball joints");
+  if (joint->type == BALL) read_cone(mjcf, node, joint);
+}
+
+/* True if a body or one in it has gravcomp. */
+static bool is_balanced(struct Mjcf *mjcf, xmlNodePtr body) {
+  bool found = is_element(body, "body") && mjcf_number(mjcf, body, "gravcomp", 0) != 0;
+  for (xmlNodePtr child = body->children; child != NULL && !found; child = child->next)
+    found = is_balanced(mjcf, child);
+  return found;
+}
+
+/* Warns where MuJoCo's actuators, by actuatorgravcomp, balance less than the weight: beyond a limit, or without any. */
+static void warn_of_balance(struct Mjcf *mjcf, xmlNodePtr node, const struct RobotJoint *joint) {
+  bool has_actuators = false, is_limited = !isnan(joint->actuator_limits[0]);
+  if (!mjcf_is(mjcf, node, "actuatorgravcomp", "true") || !is_balanced(mjcf, node->parent)) return;
+  for (xmlNodePtr section = mjcf->root->children; section != NULL; section = section->next)
+    has_actuators |= is_element(section, "actuator") && xmlFirstElementChild(section) != NULL;
+  if (!has_actuators)
+    warn_unread(&mjcf->file, line_of(node), "actuatorgravcomp=\"true\" in a file without actuators",
+                "gravcomp=\"0\" of the <body>s, as nothing balances them in MuJoCo");
+  else if (is_limited)
+    warn_unread(&mjcf->file, line_of(node), "the limit of actuatorgravcomp by actuatorfrcrange",
+                "actuatorgravcomp=\"false\", or no actuatorfrcrange");
 }
 
 /* Warns of a <freejoint> for which MuJoCo moves the frame of the body to its centre of mass and principal axes. */
@@ -195,6 +229,7 @@ static void add_to_chain(struct Mjcf *mjcf, xmlNodePtr node, struct Chain *chain
   } else joint->origin = placement_within(&chain->placement, &anchor);
   if (type == REVOLUTE || type == PRISMATIC) read_single(mjcf, node, joint);
   else read_several(mjcf, node, joint);
+  warn_of_balance(mjcf, node, joint);
   if (child != chain->body) mjcf_add_link(mjcf, node, child);
   chain->has_body = child == chain->body;
   chain->parent = child;

@@ -135,7 +135,11 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, c
   struct TransmissionTerm *term = allocate(1, sizeof *term);
   *term = (struct TransmissionTerm){.coefficient = 1};
   bool is_at_joint = !has_attribute(node, "tendon");
-  if (is_at_joint) term->joint_name = required_attribute(&mjcf->file, node, joint_attribute(node));
+  const char *other = has_attribute(node, "cranksite") ? "a crank" : has_attribute(node, "body") ? "a body" : NULL;
+  if (is_at_joint && other != NULL && !has_attribute(node, joint_attribute(node)))
+    mjcf_error(mjcf, node, "<%s> at %s is not read; expected it at a joint, tendon or site", (const char *)node->name,
+               other);
+  else if (is_at_joint) term->joint_name = required_attribute(&mjcf->file, node, joint_attribute(node));
   return (struct Transmission){.terms = term, .count = is_at_joint};
 }
 
@@ -145,17 +149,18 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, c
  */
 static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *prefix,
                           double limits[2]) {
+  const char *range = format_text("%srange", prefix);
+  if (!mjcf_prevails(mjcf, node, "inheritrange", range)) return;
   double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
   const char *joint_name = attribute(node, joint_attribute(node));
   if (share == 0 || mjcf_is(mjcf, node, format_text("%slimited", prefix), "false")) return;
   const struct RobotJoint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
   if (tendon == NULL && joint == NULL) return;
   double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;
-  bool is_known = !isnan(lower) && !isnan(upper);
-  if (!is_known || !isnan(limits[0])) {
-    mjcf_error(mjcf, node, "inheritrange of <%s> is %s %srange%s", (const char *)node->name,
-               is_known ? "beside a" : "a share of the range of its joint or tendon, which has none; expected", prefix,
-               is_known ? "; expected one of them" : "");
+  if (isnan(lower)) {
+    mjcf_error(mjcf, node,
+               "inheritrange of <%s> is a share of the range of its joint or tendon, which has none; expected %s",
+               (const char *)node->name, range);
     return;
   }
   double middle = (lower + upper) / 2, half = share * (upper - lower) / 2;
@@ -178,8 +183,24 @@ static void check_limited_joints(struct Mjcf *mjcf, xmlNodePtr node, const struc
     }
 }
 
+static bool is_taken(const struct Robot *robot, const char *name) {
+  for (size_t i = 0; i < robot->actuator_count; i++)
+    if (robot->actuators[i].name != NULL && strcmp(robot->actuators[i].name, name) == 0) return true;
+  return false;
+}
+
+/* Returns the name of an actuator: its own, or that of its joint, tendon or site, with a number behind further ones. */
+static char *name_actuator(const struct Robot *robot, xmlNodePtr node) {
+  static const char *const names[] = {"name", "tendon", "joint", "jointinparent", "site"};
+  char *first = NULL;
+  for (size_t i = 0; i < sizeof names / sizeof *names && first == NULL; i++) first = attribute(node, names[i]);
+  char *name = first;
+  if (first == NULL || has_attribute(node, "name")) return first;
+  for (size_t number = 2; is_taken(robot, name); number++) name = format_text("%s_%zu", first, number);
+  return name;
+}
+
 void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const places[] = {"tendon", "joint", "jointinparent", "site"};
   struct Robot *robot = mjcf->file.robot;
   size_t kind = kind_of(node);
   if (kind == KINDS) {
@@ -190,11 +211,11 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
   double gear[6] = {1};
   mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
-  struct Actuator actuator = {
-      .name = attribute(node, "name"), .line = line_of(node), .gear = gear[0], .wrench = wrench_of(mjcf, node, gear)};
+  struct Actuator actuator = {.name = name_actuator(robot, node),
+                              .line = line_of(node),
+                              .gear = gear[0],
+                              .wrench = wrench_of(mjcf, node, gear)};
   if (actuator.wrench == NULL) actuator.transmission = transmission_of(mjcf, node, tendon);
-  for (size_t i = 0; i < sizeof places / sizeof *places && actuator.name == NULL; i++)
-    actuator.name = attribute(node, places[i]);
   mjcf_check_laws(mjcf, node);
   kinds[kind].read(mjcf, node, &actuator);
   if (actuator.wrench != NULL) check_wrench(mjcf, node, &actuator);
@@ -211,7 +232,10 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
     memset(actuator.bias, 0, sizeof actuator.bias);
     actuator.force[0] = actuator.force[1] = NAN;
   }
-  mjcf_reject(mjcf, node, "actdim delay damping armature");
+  mjcf_reject(mjcf, node, "delay damping armature");
+  if (mjcf_number(mjcf, node, "actdim", 1) > 1)
+    mjcf_error(mjcf, node, "actdim of <%s> is above 1; expected an actuator with one activation",
+               (const char *)node->name);
   if (mjcf_text(mjcf, node, "refsite") != NULL)
     mjcf_error(mjcf, node,
                "refsite=\"%.60s\" of <%s> is not read; expected a <spatial> tendon from site to site, or a <joint>",

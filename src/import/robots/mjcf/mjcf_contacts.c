@@ -165,28 +165,41 @@ static char *name_of(const struct Mjcf *mjcf, xmlNodePtr node) {
                                                    file_line(mjcf->file.diagnostics, line_of(node)).line);
 }
 
+/* Names a geom and its body, if that has a name. */
+static char *name_in_body(const struct Mjcf *mjcf, const struct MjcfContact *contact) {
+  char *name = name_of(mjcf, contact->node);
+  bool is_known = is_element(contact->body, "worldbody") || has_attribute(contact->body, "name");
+  return is_known ? format_text("%s of %s", name, name_of(mjcf, contact->body)) : name;
+}
+
+static struct ShapePair pair_of(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
+  struct MjcfContact contact = meeting(mjcf, first, second);
+  return (struct ShapePair){.links = {first->link, second->link},
+                            .indices = {first->index, second->index},
+                            .friction = contact.dimensions == 1 ? 0 : contact.friction,
+                            .line = line_of(first->node)};
+}
+
 /* Warns of pairs of geoms that touch in MuJoCo only, by the first pair. */
 static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second,
                          size_t count) {
   const char *others = count > 1 ? format_text(", and %zu other such pair%s", count - 1, count > 2 ? "s" : "") : "";
-  report_warning(mjcf->file.diagnostics, line_of(first->node),
-                 "%s of %s does not touch %s of %s%s, unlike in MuJoCo; expected %s", name_of(mjcf, first->node),
-                 name_of(mjcf, first->body), name_of(mjcf, second->node), name_of(mjcf, second->body), others,
-                 mjcf->file.options->has_self
-                     ? "a sphere and another shape, two capsules, or a <contact> with stiffness between two boxes"
-                     : "self=\"true\" in an <include>, or --self on the command line");
+  struct ShapePair pair = pair_of(mjcf, first, second);
+  report_warning(mjcf->file.diagnostics, line_of(first->node), "%s does not touch %s%s, unlike in MuJoCo; expected %s",
+                 name_in_body(mjcf, first), name_in_body(mjcf, second), others,
+                 mjcf->file.options->has_self ? how_to_touch(mjcf->file.options, &pair)
+                                              : "self=\"true\" in an <include>, or --self on the command line");
 }
 
 /* Adds the contact of two geoms if the options request it. Returns false if there is none, or none is possible. */
 static bool add_contact(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
+  struct ShapePair pair = pair_of(mjcf, first, second);
+  char *names[2];
+  if (touch_in_system(mjcf->file.options, &pair, names)) return true;
   if (!mjcf->file.options->has_self ||
       !shapes_can_touch(&first->link->collisions[first->index], &second->link->collisions[second->index]))
     return false;
   struct MjcfContact contact = meeting(mjcf, first, second);
-  struct ShapePair pair = {.links = {first->link, second->link},
-                           .indices = {first->index, second->index},
-                           .friction = contact.dimensions == 1 ? 0 : contact.friction,
-                           .line = line_of(first->node)};
   add_shape_pair(mjcf->file.robot, &pair);
   warn_of_spin(mjcf, line_of(first->dimensions > second->dimensions ? first->node : second->node), contact.dimensions);
   return true;

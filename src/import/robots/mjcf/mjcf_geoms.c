@@ -152,20 +152,29 @@ static struct Collision shape_of(const struct Geom *geom, long line) {
   return shape;
 }
 
-/* Makes the first plane of the world the ground. Other planes touch nothing. */
+/* Adds a shape to those that can touch. */
+static void add_collision(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link,
+                          struct Collision *shape) {
+  mjcf_set_contact(mjcf, contact, link, shape);
+  APPEND(link->collisions, link->collision_count, *shape);
+}
+
+/* Makes the first plane of the world the ground, and others shapes of it. Planes of other bodies touch nothing. */
 static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, const struct Geom *geom,
-                      const struct RobotLink *link) {
+                      struct RobotLink *link) {
   struct Robot *robot = mjcf->file.robot;
   bool is_of_world = link == robot->links[0];
   if (is_of_world && robot->ground == NULL) {
     robot->ground = allocate(1, sizeof *robot->ground);
     robot->ground->placement = geom->placement;
     mjcf->ground = *contact;
+  } else if (is_of_world) {
+    struct Collision shape = {.type = "plane", .placement = geom->placement, .line = line_of(contact->node)};
+    add_collision(mjcf, contact, link, &shape);
   } else if (mjcf->file.options->has_ground)
     report_warning(mjcf->file.diagnostics, line_of(contact->node),
-                   "a <geom> of type plane of the body '%s' touches nothing; expected %s", link->name,
-                   is_of_world ? "one plane, which is the ground"
-                               : "it in the <worldbody>, of which one is the ground");
+                   "a <geom> of type plane of the body '%s' touches nothing; expected it in the <worldbody>",
+                   link->name);
 }
 
 /* Adds a geom that can touch to the collisions, any other to the visuals. */
@@ -178,7 +187,8 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
     if (touches) add_plane(mjcf, &contact, geom, link);
     return;
   }
-  if (problem != NULL && meets_ground)
+  bool may_stand = geom->type != MESH && touches && !mjcf->file.options->says_ground;
+  if (problem != NULL && (meets_ground || may_stand))
     report_warning(mjcf->file.diagnostics, line_of(node), "a <geom> of type %s of the body '%s' touches nothing: %s",
                    geom_types[geom->type], link->name, problem);
   else if (problem != NULL && geom->type == MESH && geom->mesh != NULL)
@@ -188,10 +198,8 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
   if (problem != NULL) return;
   struct Collision shape = shape_of(geom, line_of(node));
   shape.color = read_color(mjcf, node);
-  if (touches) mjcf_set_contact(mjcf, &contact, link, &shape);
-  struct Collision **shapes = touches ? &link->collisions : &link->visuals;
-  size_t *count = touches ? &link->collision_count : &link->visual_count;
-  APPEND(*shapes, *count, shape);
+  if (touches) add_collision(mjcf, &contact, link, &shape);
+  else APPEND(link->visuals, link->visual_count, shape);
 }
 
 static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {

@@ -132,7 +132,10 @@ void mjcf_read_tendon(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_limits(mjcf, node, "range", "limited", limits);
   tendon.lower = limits[0];
   tendon.upper = limits[1];
-  mjcf_reject(mjcf, node, "actuatorfrcrange");
+  const char *range = mjcf_text(mjcf, node, "actuatorfrcrange");
+  if (range != NULL && !requests_nothing(range))
+    mjcf_error(mjcf, node, "actuatorfrcrange of <%s> is not read; expected forcerange of each actuator at it",
+               (const char *)node->name);
   APPEND(robot->tendons, robot->tendon_count, tendon);
 }
 

@@ -311,7 +311,8 @@ void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *names) {
   for (const char *name = next_name(&names); name != NULL; name = next_name(&names)) {
     const char *text = mjcf_text(mjcf, node, name);
     if (text == NULL || requests_nothing(text)) continue;
-    mjcf_error(mjcf, node, "%s=\"%.60s\" of <%s> is not read, and would change the motion; remove it", name, text,
-               (const char *)node->name);
+    bool is_word = strcmp(text, "true") == 0;
+    mjcf_error(mjcf, node, "%s=\"%.60s\" of <%s> is not read, and would change the motion; expected %s=\"%s\" in it",
+               name, text, (const char *)node->name, name, is_word ? "false" : "0");
   }
 }
