@@ -182,6 +182,24 @@ LINKED = """\
 """
 
 
+# Bodies in a fluid: of one geom, of several, with principal axes and with a full tensor.
+IMMERSED = """\
+<mujoco model="immersed">
+  <option density="30" viscosity="0.7" wind="0.4 -0.2 0.3" gravity="0 0 -2"/>
+  <worldbody>
+    <body name="a" pos="0 0 1" euler="10 20 30"><freejoint name="f"/><geom type="box" size="0.1 0.2 0.05" pos="0.1 0 0.02" euler="20 0 40"/><geom size="0.1" pos="0 0.2 0"/>
+      <body name="b" pos="0.3 0 0"><joint name="h" axis="1 2 3"/><geom type="capsule" fromto="0 0 0 0.3 0.2 0.1" size="0.05"/>
+        <body name="c" pos="0.1 0.2 0.3" euler="50 10 0"><joint name="bl" type="ball"/><inertial pos="0.1 0.05 0.02" quat="1 0.3 0.2 0.5" mass="1.3" diaginertia="0.02 0.03 0.025"/>
+          <body name="d" pos="0 0 0.2" euler="0 30 0"><geom type="ellipsoid" size="0.1 0.05 0.07" pos="0.02 0.03 0.1" quat="1 2 3 4"/></body>
+        </body>
+      </body>
+    </body>
+    <body name="e" pos="2 0 0"><joint name="s" type="slide" axis="0 1 1"/><inertial pos="0 0.1 0" mass="2" fullinertia="0.05 0.06 0.04 0.01 -0.005 0.003"/></body>
+  </worldbody>
+</mujoco>
+"""
+
+
 # Actuators with a state or a gain that varies, balanced weights, and a sum of all masses.
 DRIVEN = """\
 <mujoco model="driven">
@@ -429,7 +447,7 @@ class Generator:
         )
 
 
-FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED, "Timed": TIMED} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
+FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED, "Timed": TIMED, "Immersed": IMMERSED} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -7,6 +7,7 @@
 
 #include "algebra/formula.h"
 #include "base/memory.h"
+#include "model/kinematics.h"
 #include "xml/lines.h"
 
 xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name) {
@@ -84,6 +85,21 @@ void write_end_contacts(const struct Writer *writer, const char *name, const cha
   for (int end = 0; end < 2; end++) {
     write_element(writer, "contact", "name", format_text("%s_%s", name, end == 0 ? "min" : "max"), "unit", unit, "gap",
                   end == 0 ? format_text("%s - (%s)", position, lower) : format_text("%s - %s", upper, position), NULL);
+  }
+}
+
+void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement) {
+  const double *shift = placement->translation;
+  double angles[3];
+  placement_angles(placement, angles);
+  xmlNodePtr translation =
+      shift[0] != 0 || shift[1] != 0 || shift[2] != 0 ? write_element_in(writer, frame, "translate") : NULL;
+  for (int i = 0; i < 3 && translation != NULL; i++) set_number(translation, axes[i], shift[i]);
+  for (int i = 2; i >= 0; i--) {
+    if (angles[i] == 0) continue;
+    xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
+    set_attribute(rotation, "axis", axes[i]);
+    set_number(rotation, "angle", angles[i]);
   }
 }
 

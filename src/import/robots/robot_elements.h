@@ -33,6 +33,9 @@ void write_output(const struct Writer *writer, const char *name, const char *uni
 /* Writes a <coordinate> with the velocity NAME_velocity. */
 xmlNodePtr write_coordinate(const struct Writer *writer, const char *name, const char *unit, const char *description);
 
+/* Writes a displacement, and rotations about the fixed axes, in a <frame>. */
+void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement);
+
 /* Returns the expression restricted to the limits; the expression itself if they are NAN. */
 char *clamped(const double limits[2], char *expression);
 

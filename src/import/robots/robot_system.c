@@ -26,6 +26,7 @@
 #include "robots/description/robot_file.h"
 #include "robots/mjcf/mjcf.h"
 #include "robots/robot_elements.h"
+#include "robots/robot_fluid.h"
 #include "robots/robot_joint.h"
 #include "robots/robot_shapes.h"
 #include "robots/robot_tendon.h"
@@ -39,21 +40,6 @@
 static const char base[] = "base", tool[] = "tool";
 
 static const struct JointStart no_start = {.position = {[3] = 1}};
-
-static void write_placement(const struct Writer *writer, xmlNodePtr frame, const struct Placement *placement) {
-  const double *shift = placement->translation;
-  double angles[3];
-  placement_angles(placement, angles);
-  xmlNodePtr translation =
-      shift[0] != 0 || shift[1] != 0 || shift[2] != 0 ? write_element_in(writer, frame, "translate") : NULL;
-  for (int i = 0; i < 3 && translation != NULL; i++) set_number(translation, axes[i], shift[i]);
-  for (int i = 2; i >= 0; i--) {
-    if (angles[i] == 0) continue;
-    xmlNodePtr rotation = write_element_in(writer, frame, "rotate");
-    set_attribute(rotation, "axis", axes[i]);
-    set_number(rotation, "angle", angles[i]);
-  }
-}
 
 /* Writes all links that are fixed to this one, and itself, as one body. */
 static void write_body(const struct Writer *writer, const struct RobotLink *link) {
@@ -124,7 +110,7 @@ static bool has_losses(const struct Robot *robot, const struct RobotOptions *opt
       return true;
   for (size_t i = 0; i < robot->actuator_count; i++)
     if (robot->actuators[i].bias[1] != 0 || robot->actuators[i].bias[2] != 0) return true;
-  return false;
+  return fluid_acts(robot);
 }
 
 static void write_gravity(const struct Writer *writer, const struct Robot *robot) {
@@ -171,6 +157,9 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_link(writer, link);
   write_pairs(writer, robot);
   for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) write_balance(writer, robot, link);
+  write_wind(writer, robot);
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next)
+    write_fluid_forces(writer, robot, link);
   for (size_t i = 0; i < robot->tendon_count; i++) {
     writer->line = robot->tendons[i].line;
     write_tendon(writer, &robot->tendons[i]);

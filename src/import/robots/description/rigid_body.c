@@ -141,6 +141,29 @@ struct RigidBody body_scaled(const struct RigidBody *body, double factor) {
   return scaled;
 }
 
+struct Matrix3 tensor_along(const struct RigidBody *body, const struct Matrix3 *axes) {
+  struct Matrix3 back = transposed(axes), half = product(&body->tensor, axes);
+  return product(&back, &half);
+}
+
+void principal_axes(const struct Matrix3 *symmetric, struct Matrix3 *axes) {
+  enum { SWEEPS = 30 }; /* each squares the elements beside the diagonal, relative to those on it */
+  const double(*s)[3] = symmetric->at;
+  double size = fabs(s[0][0]) + fabs(s[1][1]) + fabs(s[2][2]);
+  *axes = no_displacement.rotation;
+  for (int i = 0; i < 3 * SWEEPS; i++) {
+    int p = (i + 1) % 3, q = (i + 2) % 3;
+    struct RigidBody body = {.tensor = *symmetric};
+    struct Matrix3 along = tensor_along(&body, axes);
+    double beside = along.at[p][q], difference = along.at[p][p] - along.at[q][q];
+    if (fabs(beside) <= 1e-15 * size) continue;
+    double about[3] = {0};
+    about[i % 3] = 1;
+    struct Matrix3 step = rotation_about(about, difference != 0 ? atan(2 * beside / difference) / 2 : M_PI / 4);
+    *axes = product(axes, &step);
+  }
+}
+
 /* Returns the tensor about another point, by the parallel axis theorem (Huygens-Steiner). */
 static struct Matrix3 tensor_about(const struct RigidBody *body, const double point[3]) {
   struct Matrix3 tensor = body->tensor;

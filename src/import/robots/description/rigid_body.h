@@ -64,6 +64,12 @@ struct RigidBody body_scaled(const struct RigidBody *body, double factor);
 /* Returns two bodies, given in the same frame, merged to one. */
 struct RigidBody body_joined(const struct RigidBody *first, const struct RigidBody *second);
 
+/* Sets the columns of `axes` to the principal axes of a symmetric matrix, by Jacobi's rotations. */
+void principal_axes(const struct Matrix3 *symmetric, struct Matrix3 *axes);
+
+/* Returns the tensor of the body along other axes, the columns of a rotation. */
+struct Matrix3 tensor_along(const struct RigidBody *body, const struct Matrix3 *axes);
+
 /* True if the body has a mass or a moment of inertia. */
 bool body_has_inertia(const struct RigidBody *body);
 

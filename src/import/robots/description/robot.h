@@ -31,6 +31,8 @@ struct RobotLink {
   size_t collision_count, visual_count; /* visuals, if any, are drawn instead of collisions */
   struct RigidBody body;                /* in the link's frame; without inertia if the file gives none */
   double weightless;                    /* share of its weight that a force at its centre of mass balances */
+  struct Matrix3 axes;                  /* principal axes of the body by columns, where the file gives them, has_axes */
+  bool has_axes;
   /* Results of robot_connect(): */
   struct RobotJoint *joint;                     /* that moves the link relative to its parent; NULL for the root */
   struct RobotLink *first_child, *next_sibling; /* in the order of the file */
@@ -170,6 +172,11 @@ struct ShapePair {
   long line;
 };
 
+/* A fluid around the robot, in SI units; zeros for none. */
+struct Fluid {
+  double density, viscosity, wind[3];
+};
+
 /* A robot. After robot_connect() its links form a tree. */
 struct Robot {
   char *name;
@@ -183,7 +190,8 @@ struct Robot {
   struct ShapePair *pairs;
   size_t pair_count;
   size_t link_count, joint_count, tendon_count, actuator_count, loop_count, coupling_count;
-  double gravity[3];        /* m/s2 */
+  double gravity[3]; /* m/s2 */
+  struct Fluid fluid;
   struct Collision *ground; /* plane of the ground, normal to its z axis; NULL for z = 0 */
   struct RobotLink *root;
 };

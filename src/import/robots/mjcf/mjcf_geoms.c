@@ -107,6 +107,10 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
   double mass = has_mass ? mjcf_number_not_negative(mjcf, node, "mass", 0) : density * volume(geom);
   bool is_solid = geom->type <= ELLIPSOID, has_problem = geom->mesh != NULL && geom->mesh->problem != NULL;
   mjcf_reject(mjcf, node, "shellinertia");
+  const struct Fluid *fluid = &mjcf->file.robot->fluid;
+  if ((fluid->density > 0 || fluid->viscosity > 0) && mjcf_is(mjcf, node, "fluidshape", "ellipsoid"))
+    mjcf_error(mjcf, node,
+               "fluidshape=\"ellipsoid\" of <geom> is not read; expected none, for the fluid's forces on a box");
   if (geom->mesh != NULL && geom->mesh->is_weighed) {
     struct RigidBody body = body_scaled(&geom->mesh->body, has_mass ? mass / geom->mesh->body.mass : density);
     return body_seen_from(&geom->placement, &body);
@@ -214,6 +218,8 @@ static void read_inertial(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *
   required_attribute(&mjcf->file, node, "mass");
   for (int i = 0; i < 6; i++) body.tensor.at[row[i]][column[i]] = body.tensor.at[column[i]][row[i]] = moments[i];
   link->body = body_seen_from(&placement, &body);
+  link->has_axes = !is_full;
+  link->axes = placement.rotation;
 }
 
 /* Reads the geoms of a body, and those in its <frame>s, which transform them. groups: that have a mass; NULL for none. */
@@ -231,6 +237,8 @@ static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placemen
     double group = mjcf_number(mjcf, child, "group", 0);
     if (groups != NULL && group >= groups[0] && group <= groups[1]) {
       struct RigidBody part = weigh(mjcf, child, &geom);
+      link->has_axes = !body_has_inertia(&link->body) && geom.mesh == NULL;
+      link->axes = geom.placement.rotation;
       link->body = body_joined(&link->body, &part);
     }
     add_shape(mjcf, child, &geom, link);
