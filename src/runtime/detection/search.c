@@ -129,9 +129,25 @@ static void measure_error_bound(struct Search *search, double time) {
   }
 }
 
+/*
+ * True if the coefficients must show that f stays, without computing them. If the values are in [m, M], then c_0 is at
+ * least m, each other |c_k| is at most M - m, and the last one half of that.
+ */
+static bool is_far(const double *f) {
+  static const double most = CHEBYSHEV_DEGREE - 0.5, most_of_tail = 1.5;
+  double least = INFINITY, largest = -INFINITY;
+  for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) {
+    if (isnan(f[k])) return false;
+    if (f[k] < least) least = f[k];
+    if (f[k] > largest) largest = f[k];
+  }
+  return least > (most + 2.0 * most_of_tail) * (largest - least);
+}
+
 enum Verdict search_judge(const double *f, double error_bound) {
   double c[CHEBYSHEV_NODES], d[CHEBYSHEV_NODES], curvature[CHEBYSHEV_NODES], largest = 0.0;
   int missing = 0;
+  if (is_far(f)) return STAYS;
   for (int k = 0; k <= CHEBYSHEV_DEGREE; k++) {
     missing += isnan(f[k]) ? 1 : 0;
     if (!(fabs(f[k]) <= largest)) largest = isnan(f[k]) ? INFINITY : fabs(f[k]);
