@@ -46,6 +46,22 @@ RANGED = f"""<mujoco model="m"><option gravity="0 0 0"/><default><joint type="sl
 # A ball joint that may turn by 60 degrees, between a post and a body with equal moments of inertia; and one with its weight.
 CONE = """<mujoco model="m"><option gravity="{gravity}"/><worldbody><body name="b"><joint name="j" type="ball" range="0 60" damping="{damping}"/>
 <inertial pos="0 0 {arm}" mass="2" diaginertia="0.5 0.5 0.5"/></body></worldbody><keyframe><key name="k" qvel="0.6 -0.8 2"/><key name="far" qpos="0.6 0 0.8 0"/></keyframe></mujoco>"""
+# A slide of 2 kg with forces of each kind, and one that follows it. Each feature that <flag> may disable, and the acceleration of the first without it.
+FLAGGED = f"""<mujoco model="m"><option gravity="3 0 0"><flag {{flag}}="disable"/></option><worldbody>
+<body name="a" gravcomp="0.5"><joint name="a" type="slide" axis="1 0 0" stiffness="4" springref="0.25" damping="2" frictionloss="0.6" range="-1 0.4"/>{BOX}</body>
+<body name="b" gravcomp="1"><joint name="b" type="slide" axis="1 0 0"/>{BOX}</body></worldbody>
+<actuator><motor name="u" joint="a" ctrlrange="-5 5"/></actuator><equality><joint joint1="b" joint2="a" polycoef="0 1 0 0 0" active="true"/></equality>
+<keyframe><key name="k" qvel="0.5 0.5" ctrl="9"/></keyframe></mujoco>"""
+FORCES = {"gravity": 3.0, "spring": 1.0, "damper": -1.0, "frictionloss": -0.6, "actuation": 5.0}
+TOTAL = sum(FORCES.values())
+FLAGS = {name: (TOTAL - force) / 4 for name, force in FORCES.items()} | {
+    "passive": (6 - 0.6 + 5 + 6) / 4,
+    "clampctrl": (TOTAL + 4) / 4,
+    "equality": TOTAL / 2,
+    "constraint": (TOTAL + 0.6) / 2,
+    "limit": TOTAL / 4,
+    "energy": TOTAL / 4,
+}
 SYSTEMS = {"Driven": "", "Rests": 'friction="sticks"', "Key": 'keyframe="full"'}
 
 
@@ -56,8 +72,9 @@ def built():
     texts["Ranged"] = '<system name="Ranged"><include file="m.xml" as="m" limits="outputs"/></system>'
     cones = {"Turned": 'limits="stops" keyframe="k"', "Tilted": 'limits="stops"', "Beyond": 'limits="outputs" keyframe="far"'}
     texts |= {name: f'<system name="{name}"><include file="m.xml" as="m" {words}/></system>' for name, words in cones.items()}
+    texts |= {f"Without{flag.title()}": f'<system name="Without{flag.title()}"><include file="m.xml" as="m" friction="sticks" limits="stops" keyframe="k"/></system>' for flag in FLAGS}
     texts["Led"] = '<system name="Led"><include file="led.xml" as="m" mocap="inputs" base="floating"/></system>'
-    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED, "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
+    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED} | {f"Without{flag.title()}/m.xml": FLAGGED.format(flag=flag) for flag in FLAGS} | { "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
 
 
 def test_a_filter(open_fmu):
@@ -177,3 +194,14 @@ def test_a_ball_joint_rests_at_its_range(open_fmu):
 def test_excess_of_the_range_of_a_ball_joint(open_fmu):
     instance = open_fmu("Beyond").initialize()
     assert instance.get("m.j_beyond") == pytest.approx(2 * math.acos(0.6) - math.pi / 3, abs=1e-12)
+
+
+@pytest.mark.parametrize("flag", FLAGS)
+def test_features_that_a_flag_disables(flag, open_fmu):
+    """Both slides of 2 kg together, or the first alone without the equality, accelerate by the forces that remain. Half of one weight, and all of the other, are balanced."""
+    instance = open_fmu(f"Without{flag.title()}").initialize(tolerance=1e-10)
+    instance.run(1e-3, 1e-3)
+    assert instance.get("m.a_velocity") - 0.5 == pytest.approx(FLAGS[flag] * 1e-3, abs=5e-6)
+    instance = open_fmu(f"Without{flag.title()}").initialize(tolerance=1e-10)
+    instance.run(2.0, 0.1)
+    assert (instance.get("m.a") > 0.4 + 1e-9) == (flag in ("limit", "constraint"))

@@ -165,7 +165,7 @@ STANDS = "nothing stands on the geom 'floor'; expected ground=\"true\" in an <in
 STATIC = "the geom 'wall' of the world does not touch the geom 'ga' of the body 'a', and 2 other such pairs, unlike in MuJoCo"
 BODIES = "the geom 'ga' of the body 'a' does not touch the geom on line 6 of the body 'c', unlike in MuJoCo"
 SPINS = "the torsional friction of condim=\"4\" is not read, and may change the motion; expected condim=\"3\""
-DISABLED = "nothing touches the ground: contact=\"disable\" of <flag>; remove it"
+DISABLED = "nothing touches the ground, as <flag> disables contacts; remove this"
 
 
 @pytest.mark.parametrize(
@@ -177,6 +177,7 @@ DISABLED = "nothing touches the ground: contact=\"disable\" of <flag>; remove it
         ('ground="false" self="true"', "", "", {(5, SPINS)}),
         ("", "</worldbody>", '</worldbody><option><flag contact="disable"/></option>', set()),
         ('ground="true"', "</worldbody>", '</worldbody><option><flag contact="disable"/></option>', {(1, DISABLED)}),
+        ('ground="true"', "</worldbody>", '</worldbody><option><flag constraint="disable"/></option>', {(1, DISABLED)}),
         ("", "</worldbody>", '</worldbody><contact><exclude body1="c" body2="a"/></contact>', {(2, STANDS), (3, STATIC)}),
         ("", 'contype="0"', 'contype="0" conaffinity="2"', {(2, STANDS), (3, STATIC.replace("2 other such pairs", "1 other such pair"))}),
     ],

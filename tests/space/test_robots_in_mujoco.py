@@ -200,6 +200,21 @@ IMMERSED = """\
 """
 
 
+# Forces of each kind, of which <flag> disables one.
+FLAGGED = """\
+<mujoco model="flagged">
+  <option density="20"><flag {}="disable"/></option>
+  <worldbody>
+    <body name="a" gravcomp="1"><joint name="j" axis="0 1 0" stiffness="3" damping="2" springref="20"/><geom size="0.1" pos="0.3 0 0" mass="2"/>
+      <body name="b" pos="0.3 0 0"><joint name="k" axis="0 1 1" springdamper="0.3 0.7"/><geom size="0.1" pos="0.3 0 0" mass="1"/></body>
+    </body>
+  </worldbody>
+  <tendon><fixed name="t" stiffness="2" damping="1" springlength="0.3"><joint joint="j" coef="1"/></fixed></tendon>
+  <actuator><position name="p" joint="j" kp="4" ctrlrange="-1 1"/><velocity name="q" joint="k" kv="2"/></actuator>
+</mujoco>
+"""
+
+
 # Actuators with a state or a gain that varies, balanced weights, and a sum of all masses.
 DRIVEN = """\
 <mujoco model="driven">
@@ -447,7 +462,7 @@ class Generator:
         )
 
 
-FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED, "Timed": TIMED, "Immersed": IMMERSED} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
+FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED, "Timed": TIMED, "Immersed": IMMERSED} | {f"Without{name.title()}": FLAGGED.format(name) for name in ("spring", "damper", "actuation", "clampctrl", "gravity")} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -80,8 +80,6 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
 }
 
 static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
-  static const char *const flags[] = {"passive", "spring",   "damper",       "actuation", "clampctrl",
-                                      "limit",   "equality", "frictionloss", "constraint"};
   double groups[ACTUATOR_GROUPS];
   mjcf_numbers(mjcf, node, "gravity", 3, 3, mjcf->file.robot->gravity);
   mjcf->file.robot->fluid.density = mjcf_number_not_negative(mjcf, node, "density", mjcf->file.robot->fluid.density);
@@ -92,13 +90,7 @@ static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
   for (size_t i = 0; i < count; i++)
     if (groups[i] >= 0 && groups[i] < ACTUATOR_GROUPS) mjcf->is_off[(size_t)groups[i]] = true;
   xmlNodePtr flag = child_of(&mjcf->file, node, "flag");
-  if (flag == NULL) return;
-  mjcf->has_no_contacts |= attribute_is(flag, "contact", "disable");
-  mjcf->touches_parents |= attribute_is(flag, "filterparent", "disable");
-  if (attribute_is(flag, "gravity", "disable")) memset(mjcf->file.robot->gravity, 0, sizeof(double[3]));
-  for (size_t i = 0; i < sizeof flags / sizeof *flags; i++)
-    if (attribute_is(flag, flags[i], "disable"))
-      mjcf_error(mjcf, flag, "%s=\"disable\" of <flag> is not read; remove it", flags[i]);
+  if (flag != NULL) mjcf_read_flag(mjcf, flag);
 }
 
 static void read_axis(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {
@@ -388,6 +380,7 @@ struct Robot *mjcf_read(xmlNodePtr root, const struct RobotOptions *options, str
   mjcf_set_springs(&mjcf);
   for_each(&mjcf, "equality", true, mjcf_read_equality);
   if (options->keyframe != NULL) mjcf_read_keyframe(&mjcf);
+  mjcf_remove_disabled(&mjcf);
   if (diagnostics->errors == errors) {
     mjcf_find_contacts(&mjcf);
     mjcf_check_attributes(&mjcf);

@@ -227,11 +227,7 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
   check_limited_joints(mjcf, node, &actuator);
   double group = mjcf_number(mjcf, node, "group", 0);
-  if (group >= 0 && group < ACTUATOR_GROUPS && mjcf->is_off[(size_t)group]) {
-    memset(actuator.gain, 0, sizeof actuator.gain);
-    memset(actuator.bias, 0, sizeof actuator.bias);
-    actuator.force[0] = actuator.force[1] = NAN;
-  }
+  if (group >= 0 && group < ACTUATOR_GROUPS && mjcf->is_off[(size_t)group]) mjcf_switch_off(&actuator);
   mjcf_reject(mjcf, node, "delay damping armature");
   if (mjcf_number(mjcf, node, "actdim", 1) > 1)
     mjcf_error(mjcf, node, "actdim of <%s> is above 1; expected an actuator with one activation",

@@ -239,7 +239,7 @@ void mjcf_find_contacts(struct Mjcf *mjcf) {
   const struct RobotOptions *options = mjcf->file.options;
   if (mjcf->has_no_contacts && options->has_ground)
     report_warning(mjcf->file.diagnostics, mjcf->file.robot->line,
-                   "nothing touches the ground: contact=\"disable\" of <flag>; remove it");
+                   "nothing touches the ground, as <flag> disables contacts; remove this");
   if (mjcf->has_no_contacts || (options->says_ground && !options->has_ground && !options->has_self)) return;
   check_ground(mjcf);
   check_pairs(mjcf, true);

@@ -55,6 +55,7 @@ struct Mjcf {
   struct ContactRule *rules;
   size_t contact_count, rule_count;
   bool has_no_contacts, touches_parents; /* set by <flag> */
+  unsigned disabled;                     /* a bit for each feature in mjcf_flags.c */
   bool is_off[ACTUATOR_GROUPS];          /* disabled groups of actuators */
   struct Names *bodies;                  /* names of bodies */
   struct Names *placements; /* bodies and sites -> struct Placement in the world, with all joints at their ref */
@@ -127,6 +128,13 @@ MjcfReader mjcf_read_tendon;
 
 /* Returns the tendon of this name; NULL after reporting that there is none. */
 const struct Tendon *mjcf_tendon(struct Mjcf *mjcf, xmlNodePtr node, const char *name);
+
+/* <flag>: features that it disables. Most of them are removed by the second function, after all sections. */
+MjcfReader mjcf_read_flag;
+void mjcf_remove_disabled(struct Mjcf *mjcf);
+
+/* Lets the control of an actuator do nothing. */
+void mjcf_switch_off(struct Actuator *actuator);
 
 /* <actuator>: forces on joints and tendons that depend on a control; after all joints and tendons. */
 MjcfReader mjcf_read_actuator;
