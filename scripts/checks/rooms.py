@@ -36,6 +36,7 @@ LAGC = Layers(
     src/import/meshes
     src/import/robots/description
     src/import/robots/expansion
+    src/import/robots/mjcf/values
     src/import/robots/mjcf
     src/import/robots
     src/compiler/read/tables

@@ -20,8 +20,8 @@
 #include "robots/expansion/mjcf_attachments.h"
 #include "robots/expansion/mjcf_includes.h"
 #include "robots/expansion/mjcf_replicas.h"
-#include "robots/mjcf/mjcf_tree.h"
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/values/mjcf_tree.h"
+#include "robots/mjcf/mjcf_sections.h"
 #include "xml/nodes.h"
 
 /* Reports unsupported elements, at any depth, that would change the motion. */

@@ -1,10 +1,10 @@
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/mjcf_sections.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "robots/mjcf/mjcf_tree.h"
+#include "robots/mjcf/values/mjcf_tree.h"
 #include "xml/nodes.h"
 
 /* Sets the dynamics of a filter, or none if the time constant is 0. */

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "robots/description/shape_pairs.h"
-#include "robots/mjcf/mjcf_tree.h"
+#include "robots/mjcf/values/mjcf_tree.h"
 #include "xml/nodes.h"
 
 /* Returns the nearest body with a joint, from this one outward; the <worldbody> if there is none. */

@@ -1,7 +1,7 @@
 /* Contacts of geoms with the ground and with each other, and their friction, by MuJoCo's rules. */
 #pragma once
 
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/values/mjcf_values.h"
 
 /* Reads a <pair> or <exclude>; called before geoms are read. */
 void mjcf_read_rule(struct Mjcf *mjcf, xmlNodePtr node);

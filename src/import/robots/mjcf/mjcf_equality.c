@@ -1,9 +1,9 @@
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/mjcf_sections.h"
 
 #include <string.h>
 
 #include "base/memory.h"
-#include "robots/mjcf/mjcf_tree.h"
+#include "robots/mjcf/values/mjcf_tree.h"
 #include "xml/nodes.h"
 
 /* Returns the part of a coupling that is one joint. */

@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/mjcf_sections.h"
 #include "xml/nodes.h"
 
 static void disable_contacts(struct Mjcf *mjcf) {

@@ -1,4 +1,4 @@
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/mjcf_sections.h"
 
 #include <math.h>
 #include <string.h>

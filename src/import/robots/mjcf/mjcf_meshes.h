@@ -1,7 +1,7 @@
 /* Meshes in the <asset> of a file, and their mass properties. */
 #pragma once
 
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/values/mjcf_values.h"
 
 /* A mesh of the <asset>. */
 struct MjcfMesh {

@@ -13,8 +13,8 @@
 #include <math.h>
 
 #include "base/memory.h"
-#include "robots/mjcf/mjcf_tree.h"
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/values/mjcf_tree.h"
+#include "robots/mjcf/mjcf_sections.h"
 #include "xml/nodes.h"
 
 void mjcf_note_spring(struct Mjcf *mjcf, xmlNodePtr node, struct RobotJoint *joint) {

@@ -1,11 +1,11 @@
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/mjcf_sections.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "names/similar.h"
-#include "robots/mjcf/mjcf_tree.h"
+#include "robots/mjcf/values/mjcf_tree.h"
 #include "xml/nodes.h"
 
 static void read_fixed_tendon(struct Mjcf *mjcf, xmlNodePtr node, struct Tendon *tendon) {

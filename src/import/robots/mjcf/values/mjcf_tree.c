@@ -1,4 +1,4 @@
-#include "robots/mjcf/mjcf_tree.h"
+#include "robots/mjcf/values/mjcf_tree.h"
 
 #include <math.h>
 #include <string.h>

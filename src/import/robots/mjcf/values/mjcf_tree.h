@@ -1,7 +1,7 @@
 /* Adds links and joints for elements of MJCF, and records their placements. */
 #pragma once
 
-#include "robots/mjcf/mjcf_values.h"
+#include "robots/mjcf/values/mjcf_values.h"
 
 /* Name of the link of the <worldbody>. */
 extern const char mjcf_world[];
