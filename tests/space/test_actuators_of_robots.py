@@ -62,6 +62,12 @@ FLAGS = {name: (TOTAL - force) / 4 for name, force in FORCES.items()} | {
     "limit": TOTAL / 4,
     "energy": TOTAL / 4,
 }
+# Hinges with one torque: of a body lighter than the least mass, of one with a small moment, and of one with impossible moments.
+LEAST = """<mujoco model="m"><compiler boundmass="3" boundinertia="0.5" balanceinertia="true"/><option gravity="0 0 0"/><default><joint axis="0 0 1"/></default><worldbody>
+<body name="light"><joint name="light"/><inertial pos="2 0 0" mass="1" diaginertia="2 2 2"/></body>
+<body name="thin"><joint name="thin"/><inertial pos="0 0 0" mass="4" diaginertia="0.6 0.6 0.1"/></body>
+<body name="odd"><joint name="odd"/><inertial pos="0 0 0" mass="4" diaginertia="1 1 7"/></body></worldbody>
+<actuator><motor joint="light"/><motor joint="thin"/><motor joint="odd"/></actuator></mujoco>"""
 SYSTEMS = {"Driven": "", "Rests": 'friction="sticks"', "Key": 'keyframe="full"'}
 
 
@@ -73,8 +79,9 @@ def built():
     cones = {"Turned": 'limits="stops" keyframe="k"', "Tilted": 'limits="stops"', "Beyond": 'limits="outputs" keyframe="far"'}
     texts |= {name: f'<system name="{name}"><include file="m.xml" as="m" {words}/></system>' for name, words in cones.items()}
     texts |= {f"Without{flag.title()}": f'<system name="Without{flag.title()}"><include file="m.xml" as="m" friction="sticks" limits="stops" keyframe="k"/></system>' for flag in FLAGS}
+    texts["Least"] = '<system name="Least"><include file="m.xml" as="m"/></system>'
     texts["Led"] = '<system name="Led"><include file="led.xml" as="m" mocap="inputs" base="floating"/></system>'
-    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED} | {f"Without{flag.title()}/m.xml": FLAGGED.format(flag=flag) for flag in FLAGS} | { "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
+    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED, "Least/m.xml": LEAST} | {f"Without{flag.title()}/m.xml": FLAGGED.format(flag=flag) for flag in FLAGS} | { "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
 
 
 def test_a_filter(open_fmu):
@@ -205,3 +212,10 @@ def test_features_that_a_flag_disables(flag, open_fmu):
     instance = open_fmu(f"Without{flag.title()}").initialize(tolerance=1e-10)
     instance.run(2.0, 0.1)
     assert (instance.get("m.a") > 0.4 + 1e-9) == (flag in ("limit", "constraint"))
+
+
+def test_least_masses_and_moments(open_fmu):
+    """The angles after 1 s of a torque of 1: J = 2 + 3 2^2, the least moment, and the mean of 1, 1 and 7."""
+    instance = open_fmu("Least").initialize({f"m.{name}_control": 1.0 for name in ("light", "thin", "odd")}, tolerance=1e-10)
+    instance.run(1.0, 0.1)
+    assert instance.get("m.light", "m.thin", "m.odd") == pytest.approx([1 / 2 / 14, 1 / 2 / 0.5, 1 / 2 / 3], rel=1e-9)

@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 import fmu
 from building import BUILD, ROOT, alone, build_systems
 from fmu import lagc
-from meshes import CUBE, SQUARES, TETRAHEDRON, obj_text, stl_bytes, stl_text, triangles_of
+from meshes import CUBE, SQUARES, TETRAHEDRON, msh_bytes, obj_text, stl_bytes, stl_text, triangles_of
 
 FREE = """<coordinate name="x" velocity="vx" unit="m"/><coordinate name="y" velocity="vy" unit="m"/><coordinate name="z" velocity="vz" unit="m"/>
   <coordinate name="q0" velocity="r0" unit="1" start="1"/><coordinate name="q1" velocity="r1" unit="1"/><coordinate name="q2" velocity="r2" unit="1"/>
@@ -25,12 +25,14 @@ DROP = """<system name="{}"><parameter name="k" start="1e5" unit="N/m"/>{}<gravi
 CRATES = {
     "CrateOfBox": 'type="box" sizeX="0.4" sizeY="0.6" sizeZ="0.2" z="0.03" roll="0.2"',
     "CrateOfStl": 'type="mesh" file="cube.stl" scale="0.4 0.6 0.2" z="0.03" roll="0.2"',
+    "CrateOfMsh": 'type="mesh" file="cube.msh" scale="0.4 0.6 0.2" z="0.03" roll="0.2"',
     "CrateOfObj": 'type="mesh" file="cube.OBJ" scale="-0.4 0.6 0.2" z="0.03" roll="0.2"',
 }
 # More points than hull vertices, in random order, and one that no triangle uses.
 STONE = np.random.default_rng(7).normal(size=(40, 3)) * [0.3, 0.2, 0.1]
 FILES = {
     "CrateOfStl/cube.stl": stl_text(CUBE, triangles_of(CUBE)),
+    "CrateOfMsh/cube.msh": msh_bytes(CUBE, triangles_of(CUBE)),
     "CrateOfObj/cube.OBJ": obj_text(CUBE, SQUARES, -8),
     "Stone/stone.obj": obj_text(np.vstack([STONE, [[9, 9, 9]]]), triangles_of(STONE)),
     "Die/die.stl": stl_text(TETRAHEDRON, triangles_of(TETRAHEDRON)),
@@ -186,7 +188,7 @@ def test_text_and_binary_are_the_same(tmp_path):
 
 
 STL, OBJ = stl_text(CUBE, triangles_of(CUBE)), obj_text(CUBE, SQUARES)
-BYTES = stl_bytes(CUBE, triangles_of(CUBE))
+BYTES, MSH = stl_bytes(CUBE, triangles_of(CUBE)), msh_bytes(CUBE, triangles_of(CUBE))
 
 
 @pytest.mark.parametrize(
@@ -202,6 +204,11 @@ BYTES = stl_bytes(CUBE, triangles_of(CUBE))
         ("a.stl", BYTES[:-1], "is cut short: it has 12 triangles in its header, and 11 after it"),
         ("a.stl", BYTES[:80] + b"\xff\xff\xff\xff" + BYTES[84:], "is cut short: it has 4294967295 triangles in its header, and 12 after it"),
         ("a.stl", BYTES[:96] + b"\x00\x00\xc0\x7f" + BYTES[100:], "has the coordinate nan in triangle 1; expected finite numbers"),
+        ("a.msh", "", "has 0 bytes, and by its header 16; expected MSH"),
+        ("a.msh", MSH[:-1], f"has {len(MSH) - 1} bytes, and by its header {len(MSH)}; expected MSH"),
+        ("a.msh", b"\xff\xff\xff\xff" + MSH[4:], f"has {len(MSH)} bytes, and by its header 515396"),
+        ("a.msh", MSH[:16] + b"\x00\x00\x80\x7f" + MSH[20:], "has the coordinate inf in vertex 1; expected finite numbers"),
+        ("a.msh", MSH[:-4] + b"\x08\x00\x00\x00", "has the vertex 8 in face 12, of 8; expected numbers from 0"),
         ("a.obj", "v 0 0 0\n", "the mesh 'a.obj' is empty; expected triangles"),
         ("a.obj", OBJ.replace("f 1 ", "f 9 "), "has the corner '9' in line 9; expected the number of a point above it, from 1 to 8"),
         ("a.obj", OBJ.replace("f 1 ", "f 0 "), "has the corner '0' in line 9"),

@@ -200,6 +200,25 @@ IMMERSED = """\
 """
 
 
+# Bodies that are lighter than the least mass, without inertia, and with impossible moments.
+BOUNDED = """\
+<mujoco model="bounded">
+  <compiler boundmass="0.8" boundinertia="0.004" balanceinertia="true"/>
+  <option density="30" viscosity="0.5"/>
+  <worldbody>
+    <body name="a" pos="0 0 1" euler="10 20 30"><freejoint name="f"/><geom type="box" size="0.1 0.2 0.05" pos="0.1 0 0.02" euler="20 0 40"/><geom size="0.1" pos="0 0.2 0"/>
+      <body name="b" pos="0.3 0 0"><joint name="h" axis="1 2 3"/>
+        <body name="c" pos="0.1 0.2 0.3" euler="50 10 0"><joint name="bl" type="ball"/><inertial pos="0.1 0.05 0.02" quat="1 0.3 0.2 0.5" mass="1.3" diaginertia="0.01 0.07 0.025"/>
+          <body name="d" pos="0 0 0.2" euler="0 30 0"><geom type="ellipsoid" size="0.1 0.05 0.07" pos="0.02 0.03 0.1" quat="1 2 3 4" density="200"/></body>
+        </body>
+      </body>
+    </body>
+    <body name="e" pos="2 0 0"><joint name="s" axis="0 1 1"/><inertial pos="0 0.1 0" mass="2" fullinertia="0.05 0.06 0.001 0.01 -0.0005 0.0003"/></body>
+  </worldbody>
+</mujoco>
+"""
+
+
 # Forces of each kind, of which <flag> disables one.
 FLAGGED = """\
 <mujoco model="flagged">
@@ -462,7 +481,7 @@ class Generator:
         )
 
 
-FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED, "Timed": TIMED, "Immersed": IMMERSED} | {f"Without{name.title()}": FLAGGED.format(name) for name in ("spring", "damper", "actuation", "clampctrl", "gravity")} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
+FILES = {"Each": EACH, "Pushed": PUSHED, "Copied": COPIED, "Timed": TIMED, "Immersed": IMMERSED, "Bounded": BOUNDED} | {f"Without{name.title()}": FLAGGED.format(name) for name in ("spring", "damper", "actuation", "clampctrl", "gravity")} | {f"Random{seed}": Generator(seed).text() for seed in range(CAMPAIGN)}
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -120,11 +120,12 @@ def build_system(build, name, versions, words):
 
 
 def write_systems(folder, texts, files={}):
-    """Write system.xml and the files that it names, leave unchanged files untouched, and remove other systems from the folder."""
-    for path, text in ({f"{name}/system.xml": text for name, text in texts.items()} | files).items():
+    """Write system.xml and the files that it names, text or bytes, leave unchanged files untouched, and remove other systems from the folder."""
+    for path, content in ({f"{name}/system.xml": text for name, text in texts.items()} | files).items():
+        content = content if isinstance(content, bytes) else content.encode()
         (folder / path).parent.mkdir(parents=True, exist_ok=True)
-        if not (folder / path).exists() or (folder / path).read_text() != text:
-            (folder / path).write_text(text)
+        if not (folder / path).exists() or (folder / path).read_bytes() != content:
+            (folder / path).write_bytes(content)
     for path in folder.iterdir():
         if path.name not in texts:
             shutil.rmtree(path)

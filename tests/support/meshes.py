@@ -33,6 +33,12 @@ def stl_bytes(points, triangles):
     return bytes(80) + struct.pack("<I", len(triangles)) + b"".join(records)
 
 
+def msh_bytes(points, triangles):
+    """A file of MuJoCo's format MSH, with normals and texture coordinates that mean nothing."""
+    counts = np.array([len(points), 1, 2, len(triangles)], "<i4")
+    return counts.tobytes() + np.asarray(points, "<f4").tobytes() + bytes(12) + bytes(16) + np.array(triangles, "<i4").tobytes()
+
+
 def obj_text(points, polygons, first=1):
     """Text of an OBJ file. `first` is the number of the first point: 1, or negative for relative numbers."""
     corners = "".join("v {:.17g} {:.17g} {:.17g}\n".format(*point) for point in points)

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "meshes/msh.h"
 #include "meshes/obj.h"
 #include "meshes/stl.h"
 
@@ -84,15 +85,17 @@ static bool has_usual_size(const struct Mesh *mesh) {
 }
 
 static bool read_bytes(const char *path, struct Mesh *mesh, char **problem) {
-  bool is_stl = ends_with(path, ".stl");
-  if (!is_stl && !ends_with(path, ".obj")) {
-    *problem = copy_text("has an unknown format; expected STL or OBJ, as Blender or MeshLab write them");
+  bool is_stl = ends_with(path, ".stl"), is_msh = ends_with(path, ".msh");
+  if (!is_stl && !is_msh && !ends_with(path, ".obj")) {
+    *problem = copy_text("has an unknown format; expected STL or OBJ, as Blender or MeshLab write them, or MSH");
     return false;
   }
   size_t length;
   char *bytes = bytes_of_file(path, &length, problem);
   if (bytes == NULL) return false;
-  bool is_right = is_stl ? stl_read(bytes, length, mesh, problem) : obj_read(bytes, mesh, problem);
+  bool is_right = is_stl   ? stl_read(bytes, length, mesh, problem)
+                  : is_msh ? msh_read(bytes, length, mesh, problem)
+                           : obj_read(bytes, mesh, problem);
   release(bytes);
   return is_right;
 }

@@ -1,28 +1,14 @@
 #include "meshes/stl.h"
 
 #include <math.h>
-#include <stdint.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "meshes/mesh_bytes.h"
 #include "meshes/mesh_lines.h"
 
-/* Bytes in the binary format: heading, offset of the count, size of a triangle, of its normal, and of a number. */
-enum { HEADING = 84, COUNT_AT = 80, RECORD = 50, NORMAL = 12, NUMBER = 4 };
-
-/* Returns a 32-bit word in little-endian order. */
-static uint32_t word_at(const char *bytes) {
-  uint32_t word = 0;
-  for (int i = NUMBER - 1; i >= 0; i--) word = word << 8 | (unsigned char)bytes[i];
-  return word;
-}
-
-static double number_at(const char *bytes) {
-  uint32_t word = word_at(bytes);
-  float number;
-  memcpy(&number, &word, sizeof number);
-  return (double)number;
-}
+/* Bytes in the binary format: heading, offset of the count, size of a triangle, and of its normal. */
+enum { HEADING = 84, COUNT_AT = 80, RECORD = 50, NORMAL = 12 };
 
 /* Appends the last three points as a triangle. */
 static bool append_facet(struct Mesh *mesh, char **problem) {
@@ -34,7 +20,7 @@ static bool read_record(const char *record, size_t number, struct Mesh *mesh, ch
   for (int corner = 0; corner < 3; corner++) {
     double point[3];
     for (int i = 0; i < 3; i++) {
-      point[i] = number_at(record + NORMAL + (3 * corner + i) * NUMBER);
+      point[i] = mesh_number_at(record + NORMAL + (3 * corner + i) * MESH_NUMBER_SIZE);
       if (isfinite(point[i])) continue;
       *problem = format_text("has the coordinate %g in triangle %zu; expected finite numbers", point[i], number);
       return false;
@@ -45,7 +31,7 @@ static bool read_record(const char *record, size_t number, struct Mesh *mesh, ch
 }
 
 static bool read_binary(const char *bytes, size_t length, struct Mesh *mesh, char **problem) {
-  size_t count = length >= HEADING ? word_at(bytes + COUNT_AT) : 0, there = length / RECORD;
+  size_t count = length >= HEADING ? mesh_word_at(bytes + COUNT_AT) : 0, there = length / RECORD;
   if (length < HEADING || count > there || HEADING + count * RECORD > length) {
     *problem =
         length < HEADING

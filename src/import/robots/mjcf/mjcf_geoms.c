@@ -245,6 +245,29 @@ static void read_geoms(struct Mjcf *mjcf, xmlNodePtr node, const struct Placemen
   }
 }
 
+/*
+ * Raises the mass and the principal moments of a body to the least ones of its file, and balances impossible ones. In
+ * MuJoCo the centre of mass of a body without inertia is displaced from its origin by its own pos.
+ */
+static void bound_inertia(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {
+  const struct MjcfCompiler *compiler = mjcf_compiler(mjcf, node);
+  struct RigidBody *body = &link->body;
+  if (!body_has_inertia(body)) mjcf_numbers(mjcf, node, "pos", 3, 3, body->center);
+  if (!link->has_axes) principal_axes(&body->tensor, &link->axes);
+  link->has_axes = true;
+  struct Matrix3 tensor = tensor_along(body, &link->axes), bounded = {{{0}}};
+  double moments[3], sum = 0;
+  bool is_possible = true;
+  for (int i = 0; i < 3; i++) moments[i] = fmax(tensor.at[i][i], compiler->least_moment);
+  for (int i = 0; i < 3; i++) sum += moments[i];
+  for (int i = 0; i < 3; i++) is_possible &= 2 * moments[i] <= sum;
+  for (int i = 0; i < 3; i++) bounded.at[i][i] = compiler->balances_moments && !is_possible ? sum / 3 : moments[i];
+  struct Placement turn = {.rotation = link->axes};
+  struct RigidBody along = {.tensor = bounded};
+  body->tensor = body_seen_from(&turn, &along).tensor;
+  body->mass = fmax(body->mass, compiler->least_mass);
+}
+
 void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) {
   bool is_world = is_element(node, "worldbody");
   xmlNodePtr inertial = child_of(&mjcf->file, node, "inertial");
@@ -253,4 +276,6 @@ void mjcf_read_body(struct Mjcf *mjcf, xmlNodePtr node, struct RobotLink *link) 
        weighs = !is_world && !has_own && compiler->inertia_from_geoms != NEVER;
   if (has_own) read_inertial(mjcf, inertial, link);
   read_geoms(mjcf, node, &no_displacement, weighs ? compiler->inertia_groups : NULL, link);
+  bool is_bounded = compiler->least_mass > 0 || compiler->least_moment > 0 || compiler->balances_moments;
+  if (!is_world && is_bounded) bound_inertia(mjcf, node, link);
 }

@@ -109,7 +109,7 @@ static bool weigh_mesh(const struct Mesh *mesh, bool is_exact, struct RigidBody 
 static char *find_file(struct Mjcf *mjcf, xmlNodePtr asset, struct MjcfMesh *mesh) {
   const char *robot = mjcf->file.diagnostics->file, *file = mjcf_text(mjcf, asset, "file");
   if (file == NULL) {
-    mesh->problem = copy_text("a <mesh> has no file; expected an STL or OBJ file");
+    mesh->problem = copy_text("a <mesh> has no file; expected an STL, OBJ or MSH file");
     return NULL;
   }
   const struct MjcfCompiler *compiler = mjcf_compiler(mjcf, asset);

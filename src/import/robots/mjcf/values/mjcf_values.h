@@ -37,9 +37,11 @@ struct MjcfCompiler {
   struct EulerAngles angles;
   bool has_automatic_limits, aligns_free;
   enum InertiaFromGeoms inertia_from_geoms;
-  double inertia_groups[2]; /* geoms of groups in this range have a mass */
-  char *mesh_folder;        /* folder of mesh files, relative to the file; NULL for its own */
-  char *file;               /* relative to the robot's file; NULL for that */
+  double least_mass, least_moment; /* of each body, and of its principal moments */
+  bool balances_moments;           /* moments that no body can have become their mean */
+  double inertia_groups[2];        /* geoms of groups in this range have a mass */
+  char *mesh_folder;               /* folder of mesh files, relative to the file; NULL for its own */
+  char *file;                      /* relative to the robot's file; NULL for that */
 };
 
 /* An MJCF file while it is read. */
