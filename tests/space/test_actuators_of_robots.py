@@ -40,7 +40,7 @@ CARRIED = f"""<mujoco model="m"><option gravity="0 0 0"/><default><default class
 RANGED = f"""<mujoco model="m"><option gravity="0 0 0"/><default><joint type="slide" axis="1 0 0" range="-0.5 0.7"/><general ctrlrange="-1 1"/>
 <default class="inherits"><position inheritrange="1"/><default class="own"><position ctrlrange="-2 2"/></default></default></default>
 <worldbody>{"".join(f'<body name="{name}"><joint name="{name}"/>{BOX}</body>' for name in "abcde")}</worldbody><actuator>
-  <position joint="a" inheritrange="0.5"/><position joint="b" class="inherits"/><position joint="c" class="own"/><position joint="d" inheritrange="0"/>
+  <position joint="a" inheritrange="0.5"/><position joint="b" class="inherits"/><position joint="c" class="own"/><position joint="d" inheritrange="0" ctrlrange="-1 1"/>
   <position joint="e" kp="3"/><motor joint="e" gear="2"/><motor name="e_4" joint="e" gear="5"/><velocity joint="e" kv="0.5"/>
 </actuator></mujoco>"""
 # A ball joint that may turn by 60 degrees, between a post and a body with equal moments of inertia; and one with its weight.

@@ -226,7 +226,7 @@ MORE_CASES = {
     "no motor and no balance": ({"motors": "", "share": 0}, "", None),
     "a balance without motors": ({"motors": "", "by": "false"}, "", None),
     "a limited motor that balances": ({"joint": 'actuatorfrcrange="-1 1"'}, "", f'the limit of actuatorgravcomp by actuatorfrcrange {UNREAD} actuatorgravcomp="false", or no actuatorfrcrange'),
-    "a field": ({"world": FIELD}, "", "a <geom> of type hfield of the body 'world' touches nothing: expected a sphere,"),
+    "a field": ({"world": FIELD}, "", "a <geom> of type hfield of the body 'world' touches nothing: expected a plane or boxes"),
     "a field that is meant to be passed": ({"world": FIELD}, 'ground="false"', None),
     "friction": ({"joint": 'frictionloss="1"'}, "", "creep replaces sticking by the friction of the joint 'j'; expected friction=\"sticks\", or \"creeps\" if this is meant, in an <include>"),
     "friction that is meant": ({"joint": 'frictionloss="1"'}, 'friction="creeps"', None),

@@ -135,7 +135,8 @@ void write_shapes(struct Writer *writer, const struct RobotLink *link, bool move
     xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
     if (link->visual_count > 0) set_attribute(shape, "drawn", "false");
     if (is_wheel(link, &link->collisions[i])) set_attribute(shape, "stands", "false");
-    if (moves && meets_ground(writer->options, link, &link->collisions[i]))
+    if (moves && meets_ground(writer->options, link, &link->collisions[i]) &&
+        !has_contact_between(writer->options, name, ground))
       write_contact(writer, link, &link->collisions[i], name, i + 1);
   }
   for (size_t i = 0; i < link->visual_count; i++)
@@ -156,13 +157,12 @@ static bool may_meet(const struct RobotLink *first, const struct RobotLink *seco
 void find_pairs(struct Robot *robot, const struct RobotOptions *options, const struct Diagnostics *diagnostics) {
   struct ShapePair other = {.links = {NULL}};
   size_t others = 0;
-  char *names[2];
   for (struct RobotLink *first = options->has_self ? robot->root : NULL; first != NULL; first = first->next)
     for (struct RobotLink *second = first->next; second != NULL; second = second->next)
       for (size_t i = 0; i < first->collision_count && may_meet(first, second); i++)
         for (size_t j = 0; j < second->collision_count; j++) {
           struct ShapePair pair = {{first, second}, {i, j}, NAN, first->collisions[i].line};
-          if (touch_in_system(options, &pair, names)) continue;
+          if (touch_in_system(options, &pair)) continue;
           if (shapes_can_touch(&first->collisions[i], &second->collisions[j])) add_shape_pair(robot, &pair);
           else if (others++ == 0) other = pair;
         }

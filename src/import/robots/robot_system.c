@@ -255,7 +255,8 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
   warn_of_limits(diagnostics, &frictions, options->says_friction, "creep replaces sticking by the friction",
                  "friction=\"sticks\", or \"creeps\" if this is meant,", "friction sticks");
   warn_of_limits(diagnostics, &starts, false, "limits replace the start values, which are beyond them,",
-                 "<coordinate name=\"...\" start=\"...\"/>", "keyframe NAME");
+                 "<coordinate name=\"...\" start=\"...\"/>",
+                 options->keyframe != NULL ? "keyframe with another name" : "keyframe NAME");
   warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may exceed the effort",
                  "effort=\"limited\", or \"unlimited\" if this is meant,", "effort limited");
 }

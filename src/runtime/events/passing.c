@@ -5,7 +5,7 @@
  * the event comes from the dense output. resolve() finds the modes and the state after it, and the solver restarts
  * there.
  *
- * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding
+ * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding, and one more for each indicator,
  * stop the motion. If zeros cannot be separated, the solver restarts with steps shorter by NEARER, at most NEARER_LIMIT
  * times in a row. If intervals may hide something however short they are, UNSURE_LIMIT of them stop the motion. So
  * every communication step ends.
@@ -26,7 +26,7 @@
 #include "detection/search_interval.h"
 #include "instance/time_laws.h"
 
-/* Consecutive events within rounding after which the motion stops. */
+/* Consecutive events within rounding after which the motion stops, beyond one of each indicator. */
 enum { EVENT_LIMIT = 30 };
 /* Length of the name of an indicator in messages. */
 enum { NAME_SIZE = 200 };
@@ -324,6 +324,11 @@ static bool take_event_state(struct Instance *instance, double time) {
   return solver->interpolate(instance, time, instance->event_state);
 }
 
+/* True if there are more events within rounding than indicators that may all switch at one time. */
+static bool is_endless(int close_events) {
+  return close_events >= EVENT_LIMIT + (int)indicator_count(lagrangian.switches);
+}
+
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->fmu_state->last_step.end, step->end), time;
   size_t indicator = 0;
@@ -339,7 +344,7 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   if (!is_found) return NULL;
   if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);
   count_event(instance, step, time, indicator, progress);
-  if (progress->close_events >= EVENT_LIMIT || progress->close_events_at_rest >= EVENT_LIMIT)
+  if (is_endless(progress->close_events) || progress->close_events_at_rest >= EVENT_LIMIT)
     return report_zeno(instance, step, progress, indicator);
   if (instance->stops_at_events) instance->fmu_state->close_events = progress->close_events;
   if (!take_event_state(instance, time)) return "the state is not available at the event";
@@ -350,7 +355,7 @@ const char *events_pass_barrier(struct Instance *instance, struct CommunicationS
                                 struct EventProgress *progress) {
   double time;
   size_t indicator;
-  if (++progress->close_events >= EVENT_LIMIT) return problem;
+  if (is_endless(++progress->close_events)) return problem;
   if (!search_for_jump(instance, &time, instance->event_state, &indicator)) return problem;
   if (time > step->end) time = step->end;
   progress->searched = time;

@@ -67,7 +67,7 @@ static bool has_phase(const struct Instance *instance, int32_t phase) {
 }
 
 static bool can_wait(const struct Instance *instance, const struct FmuState *fixed) {
-  if (fixed->close_events < 0 || fixed->close_events > 100) return false;
+  if (fixed->close_events < 0 || fixed->close_events > 1000000) return false;
   if (fixed->waiting_event == 0) return true;
   return instance->uses_event_mode && fixed->waiting_event > 0 &&
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);

@@ -32,28 +32,40 @@ static bool is_costly(const struct Collision *first, const struct Collision *sec
          (is_type(first, "capsule") && is_type(second, "box"));
 }
 
-bool touch_in_system(const struct RobotOptions *options, const struct ShapePair *pair, char *names[2]) {
+/* Returns the name of a shape of the robot in the system that includes it. */
+static char *name_in_system(const struct RobotOptions *options, const char *name) {
   const char *prefix = options->include != NULL ? attribute(options->include, "as") : NULL;
-  for (int k = 0; k < 2; k++)
-    names[k] = format_text("%s%s%s_collision%zu", prefix != NULL ? prefix : "", prefix != NULL ? "." : "",
-                           robot_part_symbol(pair->links[k]->name), pair->indices[k] + 1);
+  return prefix != NULL ? format_text("%s.%s", prefix, name) : copy_text(name);
+}
+
+bool has_contact_between(const struct RobotOptions *options, const char *first, const char *second) {
+  const char *a = name_in_system(options, first), *b = name_in_system(options, second);
   xmlNodePtr node = options->include != NULL ? options->include->parent->children : NULL;
   for (; node != NULL; node = node->next)
-    if (is_element(node, "contact") &&
-        ((attribute_is(node, "between", names[0]) && attribute_is(node, "and", names[1])) ||
-         (attribute_is(node, "between", names[1]) && attribute_is(node, "and", names[0]))))
+    if (is_element(node, "contact") && ((attribute_is(node, "between", a) && attribute_is(node, "and", b)) ||
+                                        (attribute_is(node, "between", b) && attribute_is(node, "and", a))))
       return true;
   return false;
 }
 
+/* Returns the name of a shape of a pair. */
+static char *name_of_shape(const struct ShapePair *pair, int k) {
+  return format_text("%s_collision%zu", robot_part_symbol(pair->links[k]->name), pair->indices[k] + 1);
+}
+
+bool touch_in_system(const struct RobotOptions *options, const struct ShapePair *pair) {
+  return has_contact_between(options, name_of_shape(pair, 0), name_of_shape(pair, 1));
+}
+
 char *how_to_touch(const struct RobotOptions *options, const struct ShapePair *pair) {
   const struct Collision *shapes[2];
-  char *names[2];
   for (int k = 0; k < 2; k++) shapes[k] = &pair->links[k]->collisions[pair->indices[k]];
+  for (int k = 0; k < 2; k++)
+    if (is_type(shapes[k], "mesh") || is_type(shapes[k], "ellipsoid"))
+      return copy_text("a plane, or other types than mesh and ellipsoid");
   if (!is_costly(shapes[0], shapes[1])) return copy_text("a sphere or a plane as one of them");
-  touch_in_system(options, pair, names);
   return format_text("<contact between=\"%s\" and=\"%s\" stiffness=\"...\"/> in a <system> that includes the robot",
-                     names[0], names[1]);
+                     name_in_system(options, name_of_shape(pair, 0)), name_in_system(options, name_of_shape(pair, 1)));
 }
 
 void add_shape_pair(struct Robot *robot, const struct ShapePair *pair) {

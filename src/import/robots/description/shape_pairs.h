@@ -9,11 +9,11 @@
 /* True if self="true" lets shapes of these types touch. */
 bool shapes_can_touch(const struct Collision *first, const struct Collision *second);
 
-/*
- * Sets the names of two shapes in the system that includes the robot; of collisions of links, by their indices. Returns
- * true if this system has a <contact> of its own between them.
- */
-bool touch_in_system(const struct RobotOptions *options, const struct ShapePair *pair, char *names[2]);
+/* True if the system that includes the robot has a <contact> of its own between two shapes of the robot. */
+bool has_contact_between(const struct RobotOptions *options, const char *first, const char *second);
+
+/* The same for a pair. */
+bool touch_in_system(const struct RobotOptions *options, const struct ShapePair *pair);
 
 /* Returns how two shapes that do not touch by themselves can be made to touch, for messages. */
 char *how_to_touch(const struct RobotOptions *options, const struct ShapePair *pair);

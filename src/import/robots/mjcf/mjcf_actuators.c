@@ -150,10 +150,11 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, c
 static void inherit_range(struct Mjcf *mjcf, xmlNodePtr node, const struct Tendon *tendon, const char *prefix,
                           double limits[2]) {
   const char *range = format_text("%srange", prefix);
-  if (!mjcf_prevails(mjcf, node, "inheritrange", range)) return;
   double share = mjcf_number_not_negative(mjcf, node, "inheritrange", 0);
   const char *joint_name = attribute(node, joint_attribute(node));
-  if (share == 0 || mjcf_is(mjcf, node, format_text("%slimited", prefix), "false")) return;
+  if (share == 0 || !mjcf_prevails(mjcf, node, "inheritrange", range) ||
+      mjcf_is(mjcf, node, format_text("%slimited", prefix), "false"))
+    return;
   const struct RobotJoint *joint = joint_name != NULL ? mjcf_joint(mjcf, joint_name) : NULL;
   if (tendon == NULL && joint == NULL) return;
   double lower = tendon != NULL ? tendon->lower : joint->lower, upper = tendon != NULL ? tendon->upper : joint->upper;

@@ -54,6 +54,10 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node) {
   return contact;
 }
 
+bool mjcf_is_static(const struct MjcfContact *contact) {
+  return is_element(contact->moving, "worldbody");
+}
+
 /* Returns the <pair> of two geoms, or the <exclude> of two bodies, in either order; NULL for none. */
 static const struct ContactRule *find_rule(const struct Mjcf *mjcf, bool is_pair, const char *first,
                                            const char *second) {
@@ -123,7 +127,7 @@ static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Co
   const struct MjcfContact *ground = mjcf->ground.node != NULL ? &mjcf->ground : NULL;
   long line = line_of(contact.node);
   const struct ContactRule *pair = ground != NULL ? find_pair(mjcf, ground, &contact) : NULL;
-  shape->is_clear = mjcf->has_no_contacts;
+  shape->is_clear |= mjcf->has_no_contacts;
   if (ground != NULL && pair == NULL)
     shape->is_clear |= !masks_meet(ground, &contact) || is_excluded(mjcf, ground, &contact);
   if (ground != NULL) contact = meeting(mjcf, ground, &contact);
@@ -131,9 +135,7 @@ static void meet_ground(struct Mjcf *mjcf, struct MjcfContact contact, struct Co
   if (!shape->is_clear) warn_of_spin(mjcf, line, contact.dimensions);
 }
 
-void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link,
-                      struct Collision *shape) {
-  if (mjcf->file.options->has_ground) meet_ground(mjcf, *contact, shape);
+void mjcf_note_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link) {
   mjcf->contacts = make_room(mjcf->contacts, mjcf->contact_count, sizeof *mjcf->contacts);
   struct MjcfContact *known = &mjcf->contacts[mjcf->contact_count++];
   *known = *contact;
@@ -141,13 +143,9 @@ void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, stru
   known->index = link->collision_count;
 }
 
-static bool is_static(const struct MjcfContact *contact) {
-  return is_element(contact->moving, "worldbody");
-}
-
 /* True if the carrier is the parent of the contact's body: these do not touch, unless the parent is static. */
 static bool is_carried(const struct Mjcf *mjcf, const struct MjcfContact *contact, const struct MjcfContact *carrier) {
-  return !mjcf->touches_parents && !is_static(carrier) && !is_static(contact) &&
+  return !mjcf->touches_parents && !mjcf_is_static(carrier) && !mjcf_is_static(contact) &&
          moving_body(mjcf, mjcf_body_around(contact->moving)) == carrier->moving;
 }
 
@@ -194,8 +192,7 @@ static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, con
 /* Adds the contact of two geoms if the options request it. Returns false if there is none, or none is possible. */
 static bool add_contact(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
   struct ShapePair pair = pair_of(mjcf, first, second);
-  char *names[2];
-  if (touch_in_system(mjcf->file.options, &pair, names)) return true;
+  if (touch_in_system(mjcf->file.options, &pair)) return true;
   if (!mjcf->file.options->has_self ||
       !shapes_can_touch(&first->link->collisions[first->index], &second->link->collisions[second->index]))
     return false;
@@ -212,8 +209,8 @@ static void check_pairs(struct Mjcf *mjcf, bool with_static) {
   for (size_t i = 0; i < mjcf->contact_count; i++)
     for (size_t j = 0; j < mjcf->contact_count; j++) {
       const struct MjcfContact *first = &mjcf->contacts[i], *second = &mjcf->contacts[j];
-      bool is_wanted =
-          with_static ? is_static(first) && !is_static(second) : i < j && !is_static(first) && !is_static(second);
+      bool is_wanted = with_static ? mjcf_is_static(first) && !mjcf_is_static(second)
+                                   : i < j && !mjcf_is_static(first) && !mjcf_is_static(second);
       if (!is_wanted || !may_meet(mjcf, first, second) || add_contact(mjcf, first, second)) continue;
       if (count++ > 0) continue;
       found[0] = first;
@@ -227,7 +224,7 @@ static void check_ground(struct Mjcf *mjcf) {
   bool is_met = false;
   if (mjcf->ground.node == NULL || mjcf->file.options->says_ground) return;
   for (size_t i = 0; i < mjcf->contact_count; i++)
-    is_met |= !is_static(&mjcf->contacts[i]) && may_meet(mjcf, &mjcf->ground, &mjcf->contacts[i]);
+    is_met |= !mjcf_is_static(&mjcf->contacts[i]) && may_meet(mjcf, &mjcf->ground, &mjcf->contacts[i]);
   if (is_met)
     report_warning(mjcf->file.diagnostics, line_of(mjcf->ground.node),
                    "nothing stands on %s; expected ground=\"true\" in an <include> or --ground on the command line, or "
@@ -237,6 +234,10 @@ static void check_ground(struct Mjcf *mjcf) {
 
 void mjcf_find_contacts(struct Mjcf *mjcf) {
   const struct RobotOptions *options = mjcf->file.options;
+  for (size_t i = 0; i < mjcf->contact_count && options->has_ground; i++) {
+    const struct MjcfContact *contact = &mjcf->contacts[i];
+    meet_ground(mjcf, *contact, &contact->link->collisions[contact->index]);
+  }
   if (mjcf->has_no_contacts && options->has_ground)
     report_warning(mjcf->file.diagnostics, mjcf->file.robot->line,
                    "nothing touches the ground, as <flag> disables contacts; remove this");

@@ -12,12 +12,14 @@ struct MjcfContact mjcf_contact(struct Mjcf *mjcf, xmlNodePtr node);
 /* True if the geom can touch any other one, by its masks or a <pair>. */
 bool mjcf_may_collide(const struct Mjcf *mjcf, const struct MjcfContact *contact);
 
-/*
- * Records the geom, which becomes the next collision of the link, and sets its friction on the ground. Called after the
- * geoms of the <worldbody> are read.
- */
-void mjcf_set_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link,
-                      struct Collision *shape);
+/* True if the geom's body does not move. */
+bool mjcf_is_static(const struct MjcfContact *contact);
 
-/* Adds contacts between geoms, if the options request them, and warns of others that exist in MuJoCo only. */
+/* Records the geom, which becomes the next collision of the link. */
+void mjcf_note_contact(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link);
+
+/*
+ * Sets which geoms touch the ground, and with which friction. Adds contacts between geoms, if the options request them,
+ * and warns of others that exist in MuJoCo only.
+ */
 void mjcf_find_contacts(struct Mjcf *mjcf);

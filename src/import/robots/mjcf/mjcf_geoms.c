@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "robots/mjcf/mjcf_contacts.h"
+#include "robots/mjcf/values/mjcf_tree.h"
 #include "robots/mjcf/mjcf_meshes.h"
 #include "xml/nodes.h"
 
@@ -139,6 +140,7 @@ static char *read_color(struct Mjcf *mjcf, xmlNodePtr node) {
 /* Returns why the geom cannot be a shape; NULL if it can. */
 static const char *problem_of(const struct Geom *geom, bool touches) {
   if (geom->type <= ELLIPSOID) return NULL;
+  if (geom->type == HEIGHT_FIELD) return "expected a plane or boxes";
   if (geom->type != MESH || geom->mesh == NULL) return "expected a sphere, capsule, cylinder, box, ellipsoid or mesh";
   if (touches && geom->mesh->problem == NULL && geom->mesh->is_flat) return "its mesh is flat; expected a volume";
   return geom->mesh->problem;
@@ -159,25 +161,25 @@ static struct Collision shape_of(const struct Geom *geom, long line) {
 /* Adds a shape to those that can touch. */
 static void add_collision(struct Mjcf *mjcf, const struct MjcfContact *contact, struct RobotLink *link,
                           struct Collision *shape) {
-  mjcf_set_contact(mjcf, contact, link, shape);
+  mjcf_note_contact(mjcf, contact, link);
   APPEND(link->collisions, link->collision_count, *shape);
 }
 
-/* Makes the first plane of the world the ground, and others shapes of it. Planes of other bodies touch nothing. */
+/* Makes the first plane that does not move the ground, and others shapes. Planes of moving bodies touch nothing. */
 static void add_plane(struct Mjcf *mjcf, const struct MjcfContact *contact, const struct Geom *geom,
                       struct RobotLink *link) {
   struct Robot *robot = mjcf->file.robot;
-  bool is_of_world = link == robot->links[0];
-  if (is_of_world && robot->ground == NULL) {
+  bool is_fixed = mjcf_is_static(contact);
+  if (is_fixed && robot->ground == NULL) {
     robot->ground = allocate(1, sizeof *robot->ground);
-    robot->ground->placement = geom->placement;
+    robot->ground->placement = placement_within(mjcf_placement_of(mjcf, link->name), &geom->placement);
     mjcf->ground = *contact;
-  } else if (is_of_world) {
+  } else if (is_fixed) {
     struct Collision shape = {.type = "plane", .placement = geom->placement, .line = line_of(contact->node)};
     add_collision(mjcf, contact, link, &shape);
   } else if (mjcf->file.options->has_ground)
     report_warning(mjcf->file.diagnostics, line_of(contact->node),
-                   "a <geom> of type plane of the body '%s' touches nothing; expected it in the <worldbody>",
+                   "a <geom> of type plane of the body '%s' touches nothing; expected it in a body that does not move",
                    link->name);
 }
 
