@@ -195,13 +195,19 @@ enum { MEMORY_LIMIT = 640 << 20 };
 
 static _Noreturn void end_without_memory(void) {
   fputs("lagc: out of memory: the system needs more than there is, or more than 640 MB; expected fewer or shorter "
-        "repetitions, tables, frames, constraints or outputs\n",
+        "repetitions, tables, frames, constraints or outputs, or fewer shapes that touch, as by ground=\"LINKS\"\n",
         stderr);
   exit(1);
 }
 
+/* Drops a message of libxml2, such as of missing memory, which lagc reports in its own words. */
+static void drop_message(void *context, const char *format, ...) {
+  (void)context, (void)format;
+}
+
 int main(int count, char **words) {
   on_memory_failure(end_without_memory);
+  xmlSetGenericErrorFunc(NULL, drop_message);
   limit_memory(MEMORY_LIMIT);
   write_plain_lines();
 #ifdef SIGXFSZ

@@ -186,7 +186,10 @@ void output_write(const struct Program *program, const struct Summary *summary, 
   if (limit != NULL)
     report_error(diagnostics, 0, "the description of the FMU needs %s; expected a smaller system", limit);
   else if (written) write_all(directory, contents, diagnostics);
-  else report_error(diagnostics, 0, "the output could not be generated; expected more memory");
+  else
+    report_error(diagnostics, 0,
+                 "the output needs more memory than there is, or than 640 MB; expected fewer shapes that touch, frames "
+                 "or outputs");
   xmlBufferFree(anonymous);
   for (int i = 0; i < FILE_COUNT; i++) xmlBufferFree(buffers[i]);
 }
