@@ -179,6 +179,17 @@ def test_a_robot(ready, tmp_path):
     assert ready.calls()[-1] == "python scripts/commands/run.py build/own/fmu/arm_6.fmu elbow=1"
 
 
+def test_a_file_of_any_name(tmp_path):
+    """The FMU has the name that the system has in its file."""
+    (tmp_path / "draft 3.xml").write_text('<!-- mine --><system\n description="a mass" name="Sled"><coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic></system>')
+    result = subprocess.run([ROOT / "scripts" / "build", tmp_path / "built", f"-DSYSTEMS={tmp_path / 'draft 3.xml'}", f"-DTOOLS={fmu.BUILD}"], capture_output=True, text=True)
+    assert result.returncode == 0, result.stderr
+    assert fmu.fmpy.read_model_description(tmp_path / "built" / "fmu" / "Sled.fmu").modelName == "Sled"
+    (tmp_path / "draft 3.xml").write_text("<sled/>")
+    result = subprocess.run([ROOT / "scripts" / "build", tmp_path / "built", f"-DSYSTEMS={tmp_path / 'draft 3.xml'}", f"-DTOOLS={fmu.BUILD}"], capture_output=True, text=True)
+    assert result.returncode != 0 and 'expected <system name="...">, <robot name="...">' in " ".join(result.stderr.split())
+
+
 @pytest.mark.parametrize("name", ["arm 6", "腕", "é1-b", "𝄞_"])
 def test_names_of_robots(name, tmp_path):
     """CMake finds the name that lagc gives to the robot."""
