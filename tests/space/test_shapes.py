@@ -27,6 +27,13 @@ def free(name, x="0", velocity=""):
   <body name="{name}Body" in="{name}" mass="m" Ixx="0.4*m*r^2" Iyy="0.4*m*r^2" Izz="0.4*m*r^2"/>"""
 
 
+# A capsule that may tilt above one that stands still, and is parallel to it.
+PARALLEL = """<system name="Parallel"><parameter name="k" start="1e5" unit="N/m"/><parameter name="c" start="0" unit="s/m"/>
+  <coordinate name="z" velocity="vz" unit="m"/><coordinate name="a" velocity="va" unit="rad"/><gravity z="-9.81"/>
+  <parameter name="loss" start="0" unit="N.m.s/rad"/><dissipation>loss*va^2/2</dissipation>
+  <frame name="f"><translate z="z"/><rotate axis="y" angle="a"/></frame><body name="b" in="f" mass="2" Ixx="0.1" Iyy="0.1" Izz="0.1"/>
+  <shape name="low" type="capsule" radius="0.1" length="0.6" axis="x"/><shape name="high" in="f" type="capsule" radius="0.1" length="0.6" axis="x"/>
+  <contact name="touch" between="high" and="low" stiffness="k" damping="c"/><experiment stopTime="1"/></system>"""
 CONTACT = '<contact name="touch" between="{}" and="{}" stiffness="k" damping="c" friction="mu"/>'
 SHAPES = {
     "Sphere": '<shape name="{0}" in="{1}" type="sphere" radius="0.3" x="0.02"/>',
@@ -101,6 +108,7 @@ def built():
         for method in ("taylor", "radau"):
             name = f"Sinking{kind}{method.title()}"
             texts[name] = SINKING.format(name=name, HEAD=HEAD, obstacle=obstacle, contact=CONTACT.format("skin", "obstacle"), method=method)
+    texts["Parallel"] = PARALLEL
     build_systems("shapes", texts)
 
 
@@ -443,3 +451,23 @@ def test_centres_that_come_inside(kind, method, open_fmu):
     stopped = [text for _, _, text in instance.messages if " stopped at time " in text][0]
     assert float(stopped.split(" stopped at time ")[1].split()[0]) == pytest.approx(math.sqrt(0.2 / g) + after, abs=1e-6)
     assert stopped.endswith("; retrying will not help; restore an earlier state, and follow the last message")
+
+
+def test_nearly_parallel_capsules_balance(open_fmu):
+    """
+    The point of contact is where a tilt a moves it to: s = d a (1 + 1/e) from the middle, at the distance d of the axes and with the squared sine
+    e = 1e-3 of the angle of nearly parallel ones. So the capsule oscillates about the other one by I a'' = -m g s.
+    """
+    d = 0.2 - 2 * 9.81 / 1e5
+    rate = math.sqrt(2 * 9.81 * d * (1 + 1e3) / 0.1)
+    instance = open_fmu("Parallel").initialize({"z": d, "a": 1e-5}, tolerance=1e-10)
+    for i in range(1, 6):
+        instance.step(0.01)
+        assert instance.get("a") == pytest.approx(1e-5 * math.cos(rate * 0.01 * i), abs=2e-8)
+
+
+def test_a_capsule_comes_to_rest_on_a_parallel_one(open_fmu):
+    instance = open_fmu("Parallel").initialize({"z": 0.21, "a": 0.02, "c": 2.0, "loss": 1.0}, tolerance=1e-6)
+    instance.run(3.0, 0.1)
+    assert instance.get("touch.force") == pytest.approx(2 * 9.81, rel=1e-5)
+    assert instance.get("z", "a") == pytest.approx([0.2 - 2 * 9.81 / 1e5, 0], abs=1e-6)

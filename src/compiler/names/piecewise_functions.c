@@ -80,11 +80,16 @@ Node condition_of_parameters(struct Scope *scope, Node node, long line) {
 }
 
 Node piecewise_function(struct Scope *scope, enum Operation operation, Node left, Node right, long line) {
+  return piecewise_function_for(scope, operation, left, right, functions[operation].name, line);
+}
+
+Node piecewise_function_for(struct Scope *scope, enum Operation operation, Node left, Node right, const char *purpose,
+                            long line) {
   struct Graph *graph = scope->graph;
   bool has_two = operation_arity(operation) == 2;
   Node turning = has_two ? subtract(graph, left, right) : left;
   if (keeps_whole(scope) || graph_is_constant_in_time(graph, turning)) return function(graph, operation, left, right);
-  Node sign = branch_of(scope, turning, functions[operation].name, line);
+  Node sign = branch_of(scope, turning, purpose, line);
   switch (operation) {
   case ABSOLUTE: return multiply(graph, sign, left);
   case SIGN: return sign;

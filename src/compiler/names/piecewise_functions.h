@@ -39,3 +39,7 @@ Node floor_of(struct Scope *scope, Node node, long line);
 
 /* Returns abs, sign, min or max of nodes in terms of modes. */
 Node piecewise_function(struct Scope *scope, enum Operation operation, Node left, Node right, long line);
+
+/* The same, which messages call by its purpose. */
+Node piecewise_function_for(struct Scope *scope, enum Operation operation, Node left, Node right, const char *purpose,
+                            long line);

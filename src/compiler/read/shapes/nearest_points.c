@@ -6,6 +6,7 @@
  *
  * C. Ericson, Real-Time Collision Detection, 2005, section 5.1.
  */
+#include "base/memory.h"
 #include "read/shapes/nearest_points.h"
 
 #include "algebra/simplify.h"
@@ -31,11 +32,17 @@ static void append_ball_contact(const struct ShapePair *pair, struct Vector firs
       (struct ContactPoint){.point = point, .normal = normal, .gap = gap, .distance = distance};
 }
 
+/* Returns what messages call the pieces of functions of a pair. */
+static const char *purpose_of_pair(const struct ShapePair *pair) {
+  return format_text("the nearest points of '%s' and '%s'", pair->first->shape->name, pair->second->shape->name);
+}
+
 /* Clamps a length to the interval of the size `whole` about 0. */
 static Node clamp(const struct ShapePair *pair, Node length, Node whole) {
+  const char *purpose = purpose_of_pair(pair);
   Node half = scale(pair->graph, 0.5, whole);
-  Node above = piecewise_function(pair->scope, MAXIMUM, length, negate(pair->graph, half), pair->line);
-  return piecewise_function(pair->scope, MINIMUM, above, half, pair->line);
+  Node above = piecewise_function_for(pair->scope, MAXIMUM, length, negate(pair->graph, half), purpose, pair->line);
+  return piecewise_function_for(pair->scope, MINIMUM, above, half, purpose, pair->line);
 }
 
 void sphere_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
@@ -108,16 +115,21 @@ struct NearestPoints {
 /*
  * Finds the nearest points of two segments. The nearest point of the infinite lines is clamped to the first
  * segment, projected to the second and clamped, then projected back and clamped. This is exact (Ericson, section
- * 5.1.9).
+ * 5.1.9). If spreads, the points of nearly parallel segments approach the middle of the first one: where they are
+ * parallel, and all points are nearest, the exact one would jump from end to end.
  */
 static struct NearestPoints nearest_points_of(const struct ShapePair *pair, const struct Segment *first,
-                                              const struct Segment *second) {
+                                              const struct Segment *second, bool spreads) {
   static const double nothing = 1e-12; /* for parallel lines, where any point is nearest */
+  static const double nearly = 1e-3;   /* squared sine of the angle below which points spread */
   struct Graph *graph = pair->graph;
   struct Vector u = first->direction, w = second->direction,
                 between = vector_subtract(graph, first->middle, second->middle);
   Node uw = vector_dot(graph, u, w), along_u = vector_dot(graph, between, u), along_w = vector_dot(graph, between, w);
   Node skew = subtract(graph, graph_constant(graph, 1.0 + nothing), power_number(graph, uw, 2.0));
+  if (spreads)
+    skew = piecewise_function_for(pair->scope, MAXIMUM, skew, graph_constant(graph, nearly), purpose_of_pair(pair),
+                                  pair->line);
   Node s = divide(graph, subtract(graph, multiply(graph, uw, along_w), along_u), skew);
   s = clamp(pair, s, first->length);
   Node t = clamp(pair, add(graph, along_w, multiply(graph, s, uw)), second->length);
@@ -134,7 +146,7 @@ static struct Segment axis_of_capsule(const struct ShapePair *pair, const struct
 
 void capsules_contact(const struct ShapePair *pair, struct ContactPoints *contacts) {
   struct Segment first = axis_of_capsule(pair, pair->first), second = axis_of_capsule(pair, pair->second);
-  struct NearestPoints nearest = nearest_points_of(pair, &first, &second);
+  struct NearestPoints nearest = nearest_points_of(pair, &first, &second, !pair->is_rigid);
   struct Vector between = vector_subtract(pair->graph, nearest.first, nearest.second);
   append_ball_contact(pair, nearest.first, between, pair->second->shape->radius, contacts);
 }
@@ -177,7 +189,7 @@ static void append_edge_contact(const struct ShapePair *pair, const struct Segme
                                 struct ContactPoints *contacts) {
   struct Graph *graph = pair->graph;
   struct Segment axis = axis_of_capsule(pair, pair->first);
-  struct NearestPoints nearest = nearest_points_of(pair, &axis, edge);
+  struct NearestPoints nearest = nearest_points_of(pair, &axis, edge, false);
   append_ball_contact(pair, nearest.first, vector_subtract(graph, nearest.first, nearest.second), ZERO, contacts);
   struct ContactPoint *point = &contacts->items[contacts->count - 1];
   Node grown = divide(graph, power_number(graph, nearest.excess, 2.0), pair->first->shape->radius);
