@@ -455,8 +455,8 @@ def test_centres_that_come_inside(kind, method, open_fmu):
 
 def test_nearly_parallel_capsules_balance(open_fmu):
     """
-    The point of contact is where a tilt a moves it to: s = d a (1 + 1/e) from the middle, at the distance d of the axes and with the squared sine
-    e = 1e-3 of the angle of nearly parallel ones. So the capsule oscillates about the other one by I a'' = -m g s.
+    A tilt a moves the point of contact by s = d a (1 + 1/e) from the middle. d is the distance of the axes, and e = 1e-3 the squared sine of the angle
+    below which it moves so. The capsule oscillates about the other one by I a'' = -m g s.
     """
     d = 0.2 - 2 * 9.81 / 1e5
     rate = math.sqrt(2 * 9.81 * d * (1 + 1e3) / 0.1)

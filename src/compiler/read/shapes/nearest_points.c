@@ -115,8 +115,8 @@ struct NearestPoints {
 /*
  * Finds the nearest points of two segments. The nearest point of the infinite lines is clamped to the first
  * segment, projected to the second and clamped, then projected back and clamped. This is exact (Ericson, section
- * 5.1.9). If spreads, the points of nearly parallel segments approach the middle of the first one: where they are
- * parallel, and all points are nearest, the exact one would jump from end to end.
+ * 5.1.9). If spreads, the points of nearly parallel segments approach the middle of the first one. The exact ones would
+ * jump from end to end where the segments are parallel.
  */
 static struct NearestPoints nearest_points_of(const struct ShapePair *pair, const struct Segment *first,
                                               const struct Segment *second, bool spreads) {
