@@ -45,7 +45,7 @@ RANGED = f"""<mujoco model="m"><option gravity="0 0 0"/><default><joint type="sl
 </actuator></mujoco>"""
 # A ball joint that may turn by 60 degrees, between a post and a body with equal moments of inertia; and one with its weight.
 CONE = """<mujoco model="m"><option gravity="{gravity}"/><worldbody><body name="b"><joint name="j" type="ball" range="0 60" damping="{damping}"/>
-<inertial pos="0 0 {arm}" mass="2" diaginertia="0.5 0.5 0.5"/></body></worldbody><keyframe><key name="k" qvel="0.6 -0.8 2"/><key name="far" qpos="0.6 0 0.8 0"/></keyframe></mujoco>"""
+<inertial pos="0 0 {arm}" mass="2" diaginertia="0.5 0.5 0.5"/></body></worldbody><keyframe><key name="k" qvel="0.6 -0.8 2"/><key name="far" qpos="-0.6 0 -0.8 0" qvel="0 0 1"/></keyframe></mujoco>"""
 # A slide of 2 kg with forces of each kind, and one that follows it. Each feature that <flag> may disable, and the acceleration of the first without it.
 FLAGGED = f"""<mujoco model="m"><option gravity="3 0 0"><flag {{flag}}="disable"/></option><worldbody>
 <body name="a" gravcomp="0.5"><joint name="a" type="slide" axis="1 0 0" stiffness="4" springref="0.25" damping="2" frictionloss="0.6" range="-1 0.4"/>{BOX}</body>
@@ -76,12 +76,12 @@ def built():
     texts = {name: f'<system name="{name}"><include file="m.xml" as="m" {word}/></system>' for name, word in SYSTEMS.items()}
     texts["Carried"] = '<system name="Carried"><include file="m.xml" as="m"/></system>'
     texts["Ranged"] = '<system name="Ranged"><include file="m.xml" as="m" limits="outputs"/></system>'
-    cones = {"Turned": 'limits="stops" keyframe="k"', "Tilted": 'limits="stops"', "Beyond": 'limits="outputs" keyframe="far"'}
+    cones = {"Turned": 'limits="stops" keyframe="k"', "Tilted": 'limits="stops"', "Beyond": 'limits="outputs" keyframe="far"', "Limited": 'limits="stops" keyframe="far"'}
     texts |= {name: f'<system name="{name}"><include file="m.xml" as="m" {words}/></system>' for name, words in cones.items()}
     texts |= {f"Without{flag.title()}": f'<system name="Without{flag.title()}"><include file="m.xml" as="m" friction="sticks" limits="stops" keyframe="k"/></system>' for flag in FLAGS}
     texts["Least"] = '<system name="Least"><include file="m.xml" as="m"/></system>'
     texts["Led"] = '<system name="Led"><include file="led.xml" as="m" mocap="inputs" base="floating"/></system>'
-    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED, "Least/m.xml": LEAST} | {f"Without{flag.title()}/m.xml": FLAGGED.format(flag=flag) for flag in FLAGS} | { "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
+    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED, "Least/m.xml": LEAST} | {f"Without{flag.title()}/m.xml": FLAGGED.format(flag=flag) for flag in FLAGS} | { "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Limited/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
 
 
 def test_a_filter(open_fmu):
@@ -196,6 +196,14 @@ def test_a_ball_joint_rests_at_its_range(open_fmu):
     instance.run(30.0, 1.0)
     assert instance.get("m.j_qw", "m.j_qx", "m.j_qy", "m.j_qz") == pytest.approx([math.cos(math.pi / 6), 0, -0.5, 0], abs=1e-7)
     assert instance.get("m.j_max.force") == pytest.approx(2 * 9.81 * 0.5 * 0.5 / (math.sin(math.pi / 3) / 2), rel=1e-6)
+
+
+def test_a_ball_joint_that_starts_beyond_its_range(open_fmu):
+    """It is rotated back about the same axis, y, with its angular velocity along the axes of the body."""
+    instance = open_fmu("Limited").initialize()
+    c, s = math.cos(math.pi / 6), math.sin(math.pi / 6)
+    assert instance.get("m.j_qw", "m.j_qx", "m.j_qy", "m.j_qz") == pytest.approx([-c, 0, -s, 0], abs=1e-12)
+    assert instance.get("m.b_body.omegaX", "m.b_body.omegaY", "m.b_body.omegaZ") == pytest.approx([0, 0, 1], abs=1e-12)
 
 
 def test_excess_of_the_range_of_a_ball_joint(open_fmu):

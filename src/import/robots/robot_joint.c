@@ -142,10 +142,7 @@ static void write_single(const struct Writer *writer, const struct RobotJoint *j
     const char *name = joint->symbol, *unit = joint_unit(joint);
     xmlNodePtr coordinate = joint->has_motor ? write_motor(writer, name, unit, effort, description)
                                              : write_coordinate(writer, name, unit, description);
-    double start = joint->start.position[0];
-    if (writer->options->has_stops && start < joint->lower) start = joint->lower;
-    if (writer->options->has_stops && start > joint->upper) start = joint->upper;
-    set_number(coordinate, "start", start);
+    set_number(coordinate, "start", joint->start.position[0]);
     set_number(coordinate, "velocityStart", joint->start.velocity[0]);
     motion = (struct JointMotion){.velocity = format_text("%s_velocity", joint->symbol), .ratio = number(1)};
   } else motion = write_follower(writer, joint, description);

@@ -222,9 +222,37 @@ static void warn_of_limits(const struct Diagnostics *diagnostics, const struct P
                  what, common->kind, common->name, and, attribute, option);
 }
 
-static bool starts_beyond(const struct RobotJoint *joint) {
-  double start = joint->start.position[0];
-  return joint_is_single(joint) && joint->leader == joint && (start < joint->lower || start > joint->upper);
+/* Rotates a quaternion or its rate by an angle about a unit vector: the product from the left. */
+static void rotate_start(double q[4], const double axis[3], double angle) {
+  double c = cos(angle / 2), s = sin(angle / 2), w = q[0], v[3] = {q[1], q[2], q[3]};
+  q[0] = c * w;
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    q[0] -= s * axis[i] * v[i];
+    q[i + 1] = c * v[i] + s * (axis[i] * w + axis[j] * v[k] - axis[k] * v[j]);
+  }
+}
+
+/* Rotates the start of a ball joint back to its largest angle. Returns false if it is within it. */
+static bool limit_rotation(struct JointStart *start, double largest) {
+  const double *q = &start->position[3];
+  double length = hypot(hypot(q[1], q[2]), q[3]), angle = 2 * atan2(length, q[0]);
+  double wanted = angle > M_PI ? 2 * M_PI - largest : largest;
+  if (!(2 * atan2(length, fabs(q[0])) > largest)) return false;
+  const double axis[3] = {q[1] / length, q[2] / length, q[3] / length};
+  rotate_start(&start->position[3], axis, wanted - angle);
+  rotate_start(&start->velocity[3], axis, wanted - angle);
+  return true;
+}
+
+/* Moves the start of a joint to its nearest limit. Returns false if it is within them. */
+static bool limit_start(struct RobotJoint *joint) {
+  double *start = joint->start.position, before = *start;
+  if (joint->type == BALL) return limit_rotation(&joint->start, joint->upper);
+  if (!joint_is_single(joint) || joint->leader != joint) return false;
+  if (*start < joint->lower) *start = joint->lower;
+  if (*start > joint->upper) *start = joint->upper;
+  return *start != before;
 }
 
 /* True if the <include> gives the coordinate a start value. */
@@ -234,6 +262,7 @@ static bool has_own_start(const struct RobotOptions *options, const char *coordi
   return node != NULL && has_attribute(node, "start");
 }
 
+/* Moves starts beyond stops to these. Warns of limits, frictions and efforts without a word of the <include>. */
 static void check_limits(const struct Robot *robot, const struct RobotOptions *options,
                          const struct Diagnostics *diagnostics) {
   struct PropertyCount ranges = {.count = 0}, efforts = {.count = 0}, frictions = {.count = 0}, starts = {.count = 0};
@@ -241,7 +270,8 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
     const struct RobotJoint *joint = robot->joints[i];
     if (!isnan(joint->lower)) count_one(&ranges, "joint", joint->name, joint->line);
     if (joint->friction > 0) count_one(&frictions, "joint", joint->name, joint->line);
-    if (options->has_stops && starts_beyond(joint) && !has_own_start(options, joint->symbol))
+    const char *coordinate = joint->type == BALL ? format_text("%s_qw", joint->symbol) : joint->symbol;
+    if (options->has_stops && limit_start(robot->joints[i]) && !has_own_start(options, coordinate))
       count_one(&starts, "joint", joint->name, joint->line);
     if (joint->has_motor && joint_is_single(joint) && !isnan(joint->effort))
       count_one(&efforts, "joint", joint->name, joint->line);
