@@ -66,8 +66,13 @@ static bool has_phase(const struct Instance *instance, int32_t phase) {
          !(instance->kind == KIND_MODEL_EXCHANGE ? of_steps : of_exchange);
 }
 
+/* Returns the largest count of events within rounding that a state may have. */
+static int32_t most_close_events(void) {
+  return 100 + (lagrangian.switches != NULL ? (int32_t)indicator_count(lagrangian.switches) : 0);
+}
+
 static bool can_wait(const struct Instance *instance, const struct FmuState *fixed) {
-  if (fixed->close_events < 0 || fixed->close_events > 1000000) return false;
+  if (fixed->close_events < 0 || fixed->close_events > most_close_events()) return false;
   if (fixed->waiting_event == 0) return true;
   return instance->uses_event_mode && fixed->waiting_event > 0 &&
          (size_t)fixed->waiting_event <= indicator_count(lagrangian.switches);
