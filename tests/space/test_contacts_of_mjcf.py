@@ -154,6 +154,16 @@ def test_own_contacts_replace_those_of_the_file(own, names, warns, tmp_path):
     assert {name for name in forces if not name.endswith("norm")} == names
 
 
+def test_an_own_contact_is_that_of_one_robot(tmp_path):
+    """Another robot of the same file keeps its own."""
+    (tmp_path / "ball.xml").write_text('<mujoco><worldbody><geom type="box" size="1 1 0.1"/><body name="b" pos="0 0 0.2"><freejoint/><geom size="0.1"/></body></worldbody></mujoco>')
+    robots = "".join(f'<include file="ball.xml" as="{name}" self="true"/>' for name in "ab")
+    (tmp_path / "system.xml").write_text(f'<system name="S">{robots}<contact name="own" between="a.b_collision1" and="a.world_collision1" stiffness="1e4"/></system>')
+    assert lagc("system.xml", "-o", "out", cwd=tmp_path).returncode == 0
+    forces = re.findall(r'name="([\w.]+)\.force"', (tmp_path / "out" / "modelDescription.xml").read_text())
+    assert {name for name in forces if not name.endswith("norm")} == {"own", "b.world_collision1_on_b_collision1"}
+
+
 def test_an_own_contact_replaces_that_with_the_ground(tmp_path):
     (tmp_path / "pile.xml").write_text(PILE)
     (tmp_path / "system.xml").write_text('<system name="S"><include file="pile.xml" as="r" ground="true" self="false"/><contact name="own" between="r.ground" and="r.low_collision1" stiffness="1e4"/></system>')

@@ -106,7 +106,17 @@ static xmlDocPtr load_system(const struct Source *source, const struct RobotOpti
   return NULL;
 }
 
-/* Returns the document of a source. It is parsed once for all <include>s of this file with the same options. */
+/* True if a <contact> of shapes stands beside the <include>: it replaces that of a robot with this prefix alone. */
+static bool has_contact_beside(xmlNodePtr include) {
+  for (xmlNodePtr node = include->parent->children; node != NULL; node = node->next)
+    if (is_element(node, "contact") && has_attribute(node, "between")) return true;
+  return false;
+}
+
+/*
+ * Returns the document of a source. It is parsed once for all <include>s of this file with the same options, and with
+ * the same prefix where contacts stand beside them.
+ */
 static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
   char *key = copy_text(source->canonical_path);
   const char *texts[ROBOT_WORDS];
@@ -114,6 +124,7 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
     texts[i] = attribute(source->include, robot_word(i));
     key = format_text("%s\n%s", key, texts[i] != NULL ? texts[i] : "");
   }
+  if (has_contact_beside(source->include)) key = format_text("%s\n%s", key, attribute(source->include, "as"));
   struct Document *known = names_find(reader->includes->documents, key);
   if (known == NULL) {
     struct Diagnostics local = {.file = source->file, .origin = source->origin, .noted = reader->diagnostics->noted};
