@@ -27,12 +27,8 @@ struct Swimmer {
   double box[3];
 };
 
-bool fluid_acts(const struct Robot *robot) {
-  return robot->fluid.density > 0 || robot->fluid.viscosity > 0;
-}
-
 void write_wind(const struct Writer *writer, const struct Robot *robot) {
-  for (int i = 0; i < 3 && fluid_acts(robot); i++)
+  for (int i = 0; i < 3 && fluid_acts(&robot->fluid); i++)
     if (robot->fluid.wind[i] != 0)
       write_parameter(writer, format_text("wind_%s", axes[i]), robot->fluid.wind[i], "m/s",
                       format_text("velocity of the fluid along %s", axes[i]));
@@ -63,9 +59,8 @@ static char *write_component(const struct Writer *writer, const struct Swimmer *
  * Returns the force or torque along a principal axis against a velocity. drag, viscous: its coefficients, which become
  * parameters.
  */
-static char *resistance(const struct Writer *writer, const struct Swimmer *swimmer, const char *what, int axis,
+static char *resistance(const struct Writer *writer, const struct Swimmer *swimmer, bool turns, int axis,
                         const char *velocity, double drag, double viscous) {
-  bool turns = what[0] == 's';
   const char *along = turns ? "about" : "along";
   char *sum = copy_text("");
   if (swimmer->fluid->density > 0) {
@@ -90,13 +85,12 @@ static void write_resistance(const struct Writer *writer, const struct Swimmer *
   const double *b = swimmer->box;
   double diameter = (b[0] + b[1] + b[2]) / 3, density = swimmer->fluid->density,
          viscous = M_PI * swimmer->fluid->viscosity * (turns ? pow(diameter, 3) : 3 * diameter);
-  const char *what = turns ? "spin" : "flow";
   char *components[3];
   for (int i = 0; i < 3; i++) {
     double one = b[(i + 1) % 3], other = b[(i + 2) % 3];
     double drag = density * (turns ? b[i] * (pow(one, 4) + pow(other, 4)) / 64 : one * other / 2);
-    char *name = write_component(writer, swimmer, what, i, velocity);
-    components[i] = resistance(writer, swimmer, what, i, name, drag, viscous);
+    char *name = write_component(writer, swimmer, turns ? "spin" : "flow", i, velocity);
+    components[i] = resistance(writer, swimmer, turns, i, name, drag, viscous);
   }
   xmlNodePtr node = write_element(writer, turns ? "torque" : "force", "on", swimmer->frame, "in", swimmer->frame, NULL);
   for (int i = 0; i < 3; i++) set_attribute(node, axes[i], components[i]);
@@ -104,7 +98,7 @@ static void write_resistance(const struct Writer *writer, const struct Swimmer *
 
 void write_fluid_forces(struct Writer *writer, const struct Robot *robot, const struct RobotLink *link) {
   struct Matrix3 principal = link->axes;
-  if (!fluid_acts(robot) || !(link->body.mass > 0) || !carrier_moves(link, writer->options->floats)) return;
+  if (!fluid_acts(&robot->fluid) || !(link->body.mass > 0) || !carrier_moves(link, writer->options->floats)) return;
   writer->line = link->line;
   if (!link->has_axes) principal_axes(&link->body.tensor, &principal);
   struct Matrix3 tensor = tensor_along(&link->body, &principal);

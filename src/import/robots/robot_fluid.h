@@ -3,9 +3,6 @@
 
 #include "robots/robot_elements.h"
 
-/* True if the fluid acts on the robot. */
-bool fluid_acts(const struct Robot *robot);
-
 /* Writes the parameters of the wind. */
 void write_wind(const struct Writer *writer, const struct Robot *robot);
 

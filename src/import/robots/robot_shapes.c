@@ -131,7 +131,7 @@ static bool is_wheel(const struct RobotLink *link, const struct Collision *colli
 
 void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves) {
   for (size_t i = 0; i < link->collision_count; i++) {
-    char *name = format_text("%s_collision%zu", link->symbol, i + 1);
+    char *name = collision_name(link, i);
     xmlNodePtr shape = write_shape(writer, link, &link->collisions[i], name);
     if (link->visual_count > 0) set_attribute(shape, "drawn", "false");
     if (is_wheel(link, &link->collisions[i])) set_attribute(shape, "stands", "false");
@@ -191,7 +191,7 @@ void write_pairs(struct Writer *writer, const struct Robot *robot) {
   for (size_t i = 0; i < robot->pair_count; i++) {
     const struct ShapePair *pair = &robot->pairs[i];
     char *names[2];
-    for (int k = 0; k < 2; k++) names[k] = format_text("%s_collision%zu", pair->links[k]->symbol, pair->indices[k] + 1);
+    for (int k = 0; k < 2; k++) names[k] = collision_name(pair->links[k], pair->indices[k]);
     writer->line = pair->line;
     write_shape_contact(writer, format_text("%s_on_%s", names[0], names[1]), names, "self",
                         isnan(friction) ? pair->friction : NAN);

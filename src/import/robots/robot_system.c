@@ -110,7 +110,7 @@ static bool has_losses(const struct Robot *robot, const struct RobotOptions *opt
       return true;
   for (size_t i = 0; i < robot->actuator_count; i++)
     if (robot->actuators[i].bias[1] != 0 || robot->actuators[i].bias[2] != 0) return true;
-  return fluid_acts(robot);
+  return fluid_acts(&robot->fluid);
 }
 
 static void write_gravity(const struct Writer *writer, const struct Robot *robot) {
@@ -262,31 +262,41 @@ static bool has_own_start(const struct RobotOptions *options, const char *coordi
   return node != NULL && has_attribute(node, "start");
 }
 
-/* Moves starts beyond stops to these. Warns of limits, frictions and efforts without a word of the <include>. */
+/* Moves starts beyond stops to these, with a warning unless the <include> gives another start. */
+static void limit_starts(const struct Robot *robot, const struct RobotOptions *options,
+                         const struct Diagnostics *diagnostics) {
+  struct PropertyCount starts = {.count = 0};
+  for (size_t i = 0; i < robot->joint_count && options->has_stops; i++) {
+    struct RobotJoint *joint = robot->joints[i];
+    const char *coordinate = joint->type == BALL ? format_text("%s_qw", joint->symbol) : joint->symbol;
+    if (limit_start(joint) && !has_own_start(options, coordinate))
+      count_one(&starts, "joint", joint->name, joint->line);
+  }
+  warn_of_limits(diagnostics, &starts, false, "limits replace the start values, which are beyond them,",
+                 "<coordinate name=\"...\" start=\"...\"/>",
+                 options->keyframe != NULL ? "keyframe with another name" : "keyframe NAME");
+}
+
+/* Warns of limits, frictions and efforts without a word of the <include>. */
 static void check_limits(const struct Robot *robot, const struct RobotOptions *options,
                          const struct Diagnostics *diagnostics) {
-  struct PropertyCount ranges = {.count = 0}, efforts = {.count = 0}, frictions = {.count = 0}, starts = {.count = 0};
+  struct PropertyCount ranges = {.count = 0}, efforts = {.count = 0}, frictions = {.count = 0};
   for (size_t i = 0; i < robot->joint_count; i++) {
     const struct RobotJoint *joint = robot->joints[i];
     if (!isnan(joint->lower)) count_one(&ranges, "joint", joint->name, joint->line);
     if (joint->friction > 0) count_one(&frictions, "joint", joint->name, joint->line);
-    const char *coordinate = joint->type == BALL ? format_text("%s_qw", joint->symbol) : joint->symbol;
-    if (options->has_stops && limit_start(robot->joints[i]) && !has_own_start(options, coordinate))
-      count_one(&starts, "joint", joint->name, joint->line);
     if (joint->has_motor && joint_is_single(joint) && !isnan(joint->effort))
       count_one(&efforts, "joint", joint->name, joint->line);
   }
-  for (size_t i = 0; i < robot->tendon_count; i++)
-    if (!isnan(robot->tendons[i].lower)) count_one(&ranges, "tendon", robot->tendons[i].name, robot->tendons[i].line);
-  for (size_t i = 0; i < robot->tendon_count; i++)
-    if (robot->tendons[i].friction > 0) count_one(&frictions, "tendon", robot->tendons[i].name, robot->tendons[i].line);
+  for (size_t i = 0; i < robot->tendon_count; i++) {
+    const struct Tendon *tendon = &robot->tendons[i];
+    if (!isnan(tendon->lower)) count_one(&ranges, "tendon", tendon->name, tendon->line);
+    if (tendon->friction > 0) count_one(&frictions, "tendon", tendon->name, tendon->line);
+  }
   warn_of_limits(diagnostics, &ranges, options->says_limits, "motion is not stopped at the limits",
                  "limits=\"stops\", or \"outputs\" if this is meant,", "limits stops");
   warn_of_limits(diagnostics, &frictions, options->says_friction, "creep replaces sticking by the friction",
                  "friction=\"sticks\", or \"creeps\" if this is meant,", "friction sticks");
-  warn_of_limits(diagnostics, &starts, false, "limits replace the start values, which are beyond them,",
-                 "<coordinate name=\"...\" start=\"...\"/>",
-                 options->keyframe != NULL ? "keyframe with another name" : "keyframe NAME");
   warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may exceed the effort",
                  "effort=\"limited\", or \"unlimited\" if this is meant,", "effort limited");
 }
@@ -338,6 +348,7 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *given, 
   }
   if (diagnostics->errors == errors) {
     check_limits(robot, options, diagnostics);
+    limit_starts(robot, options, diagnostics);
     if (!is_mjcf) find_pairs(robot, options, diagnostics);
   }
   xmlFreeDoc(document);

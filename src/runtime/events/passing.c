@@ -5,10 +5,10 @@
  * the event comes from the dense output. resolve() finds the modes and the state after it, and the solver restarts
  * there.
  *
- * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding, and one more for each indicator,
- * stop the motion. If zeros cannot be separated, the solver restarts with steps shorter by NEARER, at most NEARER_LIMIT
- * times in a row. If intervals may hide something however short they are, UNSURE_LIMIT of them stop the motion. So
- * every communication step ends.
+ * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding,
+ * and one more for each indicator, stop the motion. If zeros cannot be separated, the solver restarts with steps shorter
+ * by NEARER, at most NEARER_LIMIT times in a row. If intervals may hide something however short they are, UNSURE_LIMIT
+ * of them stop the motion. So every communication step ends.
  */
 #include "events/passing.h"
 

@@ -6,10 +6,10 @@
  *
  * C. Ericson, Real-Time Collision Detection, 2005, section 5.1.
  */
-#include "base/memory.h"
 #include "read/shapes/nearest_points.h"
 
 #include "algebra/simplify.h"
+#include "base/memory.h"
 #include "names/piecewise_functions.h"
 
 enum { BOX_EDGES = 12 };

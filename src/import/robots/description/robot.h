@@ -177,6 +177,10 @@ struct Fluid {
   double density, viscosity, wind[3];
 };
 
+static inline bool fluid_acts(const struct Fluid *fluid) {
+  return fluid->density > 0 || fluid->viscosity > 0;
+}
+
 /* A robot. After robot_connect() its links form a tree. */
 struct Robot {
   char *name;

@@ -39,22 +39,25 @@ static char *name_in_system(const struct RobotOptions *options, const char *name
 }
 
 bool has_contact_between(const struct RobotOptions *options, const char *first, const char *second) {
+  if (options->include == NULL) return false;
   const char *a = name_in_system(options, first), *b = name_in_system(options, second);
-  xmlNodePtr node = options->include != NULL ? options->include->parent->children : NULL;
-  for (; node != NULL; node = node->next)
+  for (xmlNodePtr node = options->include->parent->children; node != NULL; node = node->next)
     if (is_element(node, "contact") && ((attribute_is(node, "between", a) && attribute_is(node, "and", b)) ||
                                         (attribute_is(node, "between", b) && attribute_is(node, "and", a))))
       return true;
   return false;
 }
 
-/* Returns the name of a shape of a pair. */
-static char *name_of_shape(const struct ShapePair *pair, int k) {
-  return format_text("%s_collision%zu", robot_part_symbol(pair->links[k]->name), pair->indices[k] + 1);
+char *collision_name(const struct RobotLink *link, size_t index) {
+  return format_text("%s_collision%zu", robot_part_symbol(link->name), index + 1);
+}
+
+static char *name_in_pair(const struct ShapePair *pair, int k) {
+  return collision_name(pair->links[k], pair->indices[k]);
 }
 
 bool touch_in_system(const struct RobotOptions *options, const struct ShapePair *pair) {
-  return has_contact_between(options, name_of_shape(pair, 0), name_of_shape(pair, 1));
+  return has_contact_between(options, name_in_pair(pair, 0), name_in_pair(pair, 1));
 }
 
 char *how_to_touch(const struct RobotOptions *options, const struct ShapePair *pair) {
@@ -65,7 +68,7 @@ char *how_to_touch(const struct RobotOptions *options, const struct ShapePair *p
       return copy_text("a plane, or other types than mesh and ellipsoid");
   if (!is_costly(shapes[0], shapes[1])) return copy_text("a sphere or a plane as one of them");
   return format_text("<contact between=\"%s\" and=\"%s\" stiffness=\"...\"/> in a <system> that includes the robot",
-                     name_in_system(options, name_of_shape(pair, 0)), name_in_system(options, name_of_shape(pair, 1)));
+                     name_in_system(options, name_in_pair(pair, 0)), name_in_system(options, name_in_pair(pair, 1)));
 }
 
 void add_shape_pair(struct Robot *robot, const struct ShapePair *pair) {

@@ -9,6 +9,9 @@
 /* True if self="true" lets shapes of these types touch. */
 bool shapes_can_touch(const struct Collision *first, const struct Collision *second);
 
+/* Returns the name that a collision of a link has as a shape. */
+char *collision_name(const struct RobotLink *link, size_t index);
+
 /* True if the system that includes the robot has a <contact> of its own between two shapes of the robot. */
 bool has_contact_between(const struct RobotOptions *options, const char *first, const char *second);
 

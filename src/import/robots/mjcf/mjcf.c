@@ -83,11 +83,11 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
 
 static void read_option(struct Mjcf *mjcf, xmlNodePtr node) {
   double groups[ACTUATOR_GROUPS];
+  struct Fluid *fluid = &mjcf->file.robot->fluid;
   mjcf_numbers(mjcf, node, "gravity", 3, 3, mjcf->file.robot->gravity);
-  mjcf->file.robot->fluid.density = mjcf_number_not_negative(mjcf, node, "density", mjcf->file.robot->fluid.density);
-  mjcf->file.robot->fluid.viscosity =
-      mjcf_number_not_negative(mjcf, node, "viscosity", mjcf->file.robot->fluid.viscosity);
-  mjcf_numbers(mjcf, node, "wind", 3, 3, mjcf->file.robot->fluid.wind);
+  fluid->density = mjcf_number_not_negative(mjcf, node, "density", fluid->density);
+  fluid->viscosity = mjcf_number_not_negative(mjcf, node, "viscosity", fluid->viscosity);
+  mjcf_numbers(mjcf, node, "wind", 3, 3, fluid->wind);
   size_t count = mjcf_numbers(mjcf, node, "actuatorgroupdisable", 1, ACTUATOR_GROUPS, groups);
   for (size_t i = 0; i < count; i++)
     if (groups[i] >= 0 && groups[i] < ACTUATOR_GROUPS) mjcf->is_off[(size_t)groups[i]] = true;

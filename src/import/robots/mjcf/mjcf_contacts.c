@@ -170,11 +170,11 @@ static char *name_in_body(const struct Mjcf *mjcf, const struct MjcfContact *con
   return is_known ? format_text("%s of %s", name, name_of(mjcf, contact->body)) : name;
 }
 
-static struct ShapePair pair_of(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
-  struct MjcfContact contact = meeting(mjcf, first, second);
+/* Returns the pair of two geoms, without its friction. */
+static struct ShapePair pair_of(const struct MjcfContact *first, const struct MjcfContact *second) {
   return (struct ShapePair){.links = {first->link, second->link},
                             .indices = {first->index, second->index},
-                            .friction = contact.dimensions == 1 ? 0 : contact.friction,
+                            .friction = NAN,
                             .line = line_of(first->node)};
 }
 
@@ -182,7 +182,7 @@ static struct ShapePair pair_of(struct Mjcf *mjcf, const struct MjcfContact *fir
 static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second,
                          size_t count) {
   const char *others = count > 1 ? format_text(", and %zu other such pair%s", count - 1, count > 2 ? "s" : "") : "";
-  struct ShapePair pair = pair_of(mjcf, first, second);
+  struct ShapePair pair = pair_of(first, second);
   report_warning(mjcf->file.diagnostics, line_of(first->node), "%s does not touch %s%s, unlike in MuJoCo; expected %s",
                  name_in_body(mjcf, first), name_in_body(mjcf, second), others,
                  mjcf->file.options->has_self ? how_to_touch(mjcf->file.options, &pair)
@@ -191,12 +191,13 @@ static void warn_of_pair(struct Mjcf *mjcf, const struct MjcfContact *first, con
 
 /* Adds the contact of two geoms if the options request it. Returns false if there is none, or none is possible. */
 static bool add_contact(struct Mjcf *mjcf, const struct MjcfContact *first, const struct MjcfContact *second) {
-  struct ShapePair pair = pair_of(mjcf, first, second);
+  struct ShapePair pair = pair_of(first, second);
   if (touch_in_system(mjcf->file.options, &pair)) return true;
   if (!mjcf->file.options->has_self ||
       !shapes_can_touch(&first->link->collisions[first->index], &second->link->collisions[second->index]))
     return false;
   struct MjcfContact contact = meeting(mjcf, first, second);
+  pair.friction = contact.dimensions == 1 ? 0 : contact.friction;
   add_shape_pair(mjcf->file.robot, &pair);
   warn_of_spin(mjcf, line_of(first->dimensions > second->dimensions ? first->node : second->node), contact.dimensions);
   return true;

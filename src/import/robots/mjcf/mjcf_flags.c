@@ -1,6 +1,6 @@
 /*
- * Features that a <flag> disables. Contacts are left out at once. The others are removed from the robot
- * when all sections have been read, since settings such as inheritrange refer to them.
+ * Features that a <flag> disables. Contacts are left out at once. The others are removed from the robot when all
+ * sections have been read, since settings such as inheritrange refer to them.
  */
 #include <math.h>
 #include <string.h>

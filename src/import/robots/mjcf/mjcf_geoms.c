@@ -108,8 +108,7 @@ static struct RigidBody weigh(struct Mjcf *mjcf, xmlNodePtr node, const struct G
   double mass = has_mass ? mjcf_number_not_negative(mjcf, node, "mass", 0) : density * volume(geom);
   bool is_solid = geom->type <= ELLIPSOID, has_problem = geom->mesh != NULL && geom->mesh->problem != NULL;
   mjcf_reject(mjcf, node, "shellinertia");
-  const struct Fluid *fluid = &mjcf->file.robot->fluid;
-  if ((fluid->density > 0 || fluid->viscosity > 0) && mjcf_is(mjcf, node, "fluidshape", "ellipsoid"))
+  if (fluid_acts(&mjcf->file.robot->fluid) && mjcf_is(mjcf, node, "fluidshape", "ellipsoid"))
     mjcf_error(mjcf, node,
                "fluidshape=\"ellipsoid\" of <geom> is not read; expected none, for the fluid's forces on a box");
   if (geom->mesh != NULL && geom->mesh->is_weighed) {
