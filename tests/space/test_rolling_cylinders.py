@@ -164,6 +164,6 @@ def indicators_of_car(folder, kind, angle):
 
 
 def test_wheels_of_a_urdf(tmp_path):
-    """A cylinder about the axis of a joint without limits touches with its rims alone. Each of 16 other points has two indicators, and the tilt has one."""
+    """A cylinder about the axis of a joint without limits touches with its rims alone. Each of 16 other points has two indicators, and the tilt and the reach have one each."""
     wheel = indicators_of_car(tmp_path, "continuous", math.pi / 2)
-    assert indicators_of_car(tmp_path, "revolute", math.pi / 2) == indicators_of_car(tmp_path, "continuous", 0) == wheel + 33
+    assert indicators_of_car(tmp_path, "revolute", math.pi / 2) == indicators_of_car(tmp_path, "continuous", 0) == wheel + 34

@@ -437,6 +437,44 @@ static Node without_carried_forces(const struct Model *model, Node node) {
   return node;
 }
 
+/* Returns the number of nodes of an ascending list that are less than a node. */
+static size_t count_below(const struct NodeList *list, Node node) {
+  size_t low = 0, high = list->count;
+  while (low < high) {
+    size_t middle = (low + high) / 2;
+    if (list->nodes[middle] < node) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+static void insert_node(struct NodeList *ascending, Node node) {
+  size_t slot = count_below(ascending, node);
+  append_node(ascending, node);
+  for (size_t i = ascending->count - 1; i > slot; i--) ascending->nodes[i] = ascending->nodes[i - 1];
+  ascending->nodes[slot] = node;
+}
+
+static bool drop_guard(void *conditions, enum Operation operation, Node left, Node right, Node *result) {
+  const struct NodeList *ascending = conditions;
+  size_t slot = operation == GUARD ? count_below(ascending, left) : ascending->count;
+  bool drops = slot < ascending->count && ascending->nodes[slot] == left;
+  if (drops) *result = right;
+  return drops;
+}
+
+/* Removes the guards that leave out what has no effect. Conditions may contain guards of earlier ones. */
+static Node without_conditions(const struct Model *model, Node node) {
+  const struct NodeList *conditions = &model->switches.conditions;
+  struct NodeList *shown = model->switches.shown_conditions;
+  if (shown == NULL) return node;
+  const struct Rebuilding rebuilding = {model->graph, shown, drop_guard};
+  for (size_t i = shown->count; i < conditions->count; i++)
+    insert_node(shown, rebuild(&rebuilding, without_branches(model, conditions->nodes[i])));
+  return rebuild(&rebuilding, node);
+}
+
 Node as_written(const struct Model *model, Node node) {
-  return without_carried_forces(model, without_rests(model, without_branches(model, node)));
+  node = without_conditions(model, without_branches(model, node));
+  return without_carried_forces(model, without_rests(model, node));
 }

@@ -16,6 +16,11 @@ void append_ball(struct Switches *switches, struct BallContact ball) {
   APPEND(switches->balls, switches->ball_count, ball);
 }
 
+void append_condition(struct Switches *switches, Node condition) {
+  if (switches->shown_conditions == NULL) switches->shown_conditions = allocate(1, sizeof *switches->shown_conditions);
+  append_node(&switches->conditions, condition);
+}
+
 const struct Branch *branch_with_mode(const struct Switches *switches, Node mode) {
   for (size_t i = 0; i < switches->branch_count; i++)
     if (switches->branches[i].mode == mode) return &switches->branches[i];

@@ -3,7 +3,7 @@
 
 #include <stdbool.h>
 
-#include "algebra/graph.h"
+#include "algebra/node_list.h"
 #include "passage.h"
 #include "resting.h"
 
@@ -127,6 +127,8 @@ struct Switches {
   size_t ball_count;
   struct Event *events;
   size_t event_count;
+  struct NodeList conditions;        /* see append_condition() */
+  struct NodeList *shown_conditions; /* the first ones as pages would show them, ascending; NULL without conditions */
 };
 
 /* Appends a branch to the list. */
@@ -134,6 +136,9 @@ void append_branch(struct Switches *switches, struct Branch branch);
 
 /* Appends a contact to the list of balls. */
 void append_ball(struct Switches *switches, struct BallContact ball);
+
+/* Appends a condition of guards that leave out what has no effect elsewhere: pages do not show them. */
+void append_condition(struct Switches *switches, Node condition);
 
 /* Appends the expression of mod(a, divisor) to the list. */
 void append_remainder(struct Switches *switches, struct Remainder remainder);

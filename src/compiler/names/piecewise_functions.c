@@ -61,7 +61,9 @@ static Node sign_of(struct Scope *scope, Node node, const char *function_name, l
   if (keeps_whole(scope) || is_fixed) return function(graph, SIGN, node, ZERO);
   Node base;
   double factor = coefficient_of(graph, node, &base);
+  if (scope->relevance != ONE) base = choose_node(graph, scope->relevance, base, ONE);
   Node mode = mode_of(scope, base, function_name, line, is_last_sign);
+  if (scope->relevance != ONE) mode = function(graph, GUARD, scope->relevance, mode);
   return factor < 0.0 ? negate(graph, mode) : mode;
 }
 

@@ -24,6 +24,7 @@ struct Scope *scope_create(struct Graph *graph, struct Diagnostics *diagnostics)
   scope->warned_numbers = names_create();
   scope->noted_integrals = names_create();
   scope->prefix = "";
+  scope->relevance = ONE;
   return scope;
 }
 

@@ -41,6 +41,7 @@ struct Scope {
   struct Names *noted_integrals;             /* "file:line:text" of those that a message has reported */
   struct Names *warned_numbers;              /* "file:line:number" of those that a warning has reported */
   long table_line;                           /* on which the current table is used */
+  Node relevance; /* new branches matter where it is positive: elsewhere they have no events, and their modes are 0 */
 };
 
 /* Returns a scope without names, which reports to the diagnostics. */

@@ -2,6 +2,7 @@
 
 #include "algebra/simplify.h"
 #include "names/piecewise_functions.h"
+#include "read/shapes/reach.h"
 
 /* Signs of numbers that rest at 0 are those of the number plus this share of its size. They decide nothing there. */
 static const double sign_bias = 1e-7;
@@ -121,26 +122,13 @@ static struct BoxCrossing crossing_of(const struct Boxes *boxes, int i, int j) {
   return crossing;
 }
 
-/* Returns a mode that is positive where the balls about both boxes overlap. */
-static Node is_near(const struct Boxes *boxes, struct Vector apart) {
-  struct Graph *graph = boxes->graph;
-  Node reach = ZERO;
-  for (int own = 0; own < 2; own++) {
-    const Node *half = boxes->box[own].half;
-    struct Vector corner = {{half[0], half[1], half[2]}};
-    reach = add(graph, reach, power_number(graph, vector_dot(graph, corner, corner), 0.5));
-  }
-  Node margin = subtract(graph, power_number(graph, reach, 2.0), vector_dot(graph, apart, apart));
-  return is_positive_where(boxes, ONE, margin);
-}
-
 /*
  * Finds the distance of the boxes. Switching functions matter where the balls about the boxes overlap, and those of
  * edges only where no face separates the boxes.
  */
-static void find_distance(struct Boxes *boxes, struct Vector apart) {
+static void find_distance(struct Boxes *boxes) {
   struct Graph *graph = boxes->graph;
-  Node near = is_near(boxes, apart);
+  Node near = are_near(boxes->pair);
   for (int i = 0; i < 9; i++) {
     Node cosine = boxes->cosine[i / 3][i % 3];
     boxes->size[i / 3][i % 3] = multiply(graph, sign_where(boxes, near, cosine, ONE), cosine);
@@ -170,6 +158,6 @@ struct Boxes boxes_of(const struct ShapePair *pair) {
     second->other[i] = negate(graph, vector_dot(graph, apart, second->axis[i]));
     for (int j = 0; j < 3; j++) boxes.cosine[i][j] = vector_dot(graph, first->axis[i], second->axis[j]);
   }
-  find_distance(&boxes, apart);
+  find_distance(&boxes);
   return boxes;
 }

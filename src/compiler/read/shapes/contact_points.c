@@ -6,6 +6,7 @@
 #include "read/shapes/box_points.h"
 #include "read/shapes/nearest_points.h"
 #include "read/shapes/plane_points.h"
+#include "read/shapes/reach.h"
 
 struct ContactSide contact_side_of(struct Reader *reader, long line, const struct ContactShape *shape) {
   const struct Mechanism *mechanism = &reader->model->mechanism;
@@ -59,7 +60,12 @@ struct ContactPoints contact_points_of(struct Reader *reader, long line, const s
   if (is_exchanged) append_contacts = functions[second->shape->type][first->shape->type];
   struct ContactPoints contacts = {
       .items = allocate(count_contact_points(first->shape, second->shape), sizeof *contacts.items)};
+  /* Boxes on boxes have conditions of their own. */
+  contacts.are_near = append_contacts == boxes_contacts ? ONE : are_near(&pair);
+  append_condition(&reader->model->switches, contacts.are_near);
+  reader->scope->relevance = contacts.are_near;
   append_contacts(&pair, &contacts);
+  reader->scope->relevance = ONE;
   for (size_t i = 0; i < contacts.count && is_exchanged; i++)
     contacts.items[i].normal = vector_scale(graph, graph_constant(graph, -1.0), contacts.items[i].normal);
   return contacts;

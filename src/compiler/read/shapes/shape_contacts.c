@@ -273,7 +273,12 @@ static Node pressing_force(struct Reader *reader, long line, const struct Compli
   struct Graph *graph = scope->graph;
   Node rate = negate(graph, total_time_derivative(scope, gap));
   Node factor = add(graph, ONE, multiply(graph, law->damping, rate));
-  if (law->damping != ZERO) factor = piecewise_function(scope, MAXIMUM, factor, ZERO, line);
+  if (law->damping != ZERO) {
+    scope->relevance = negate(graph, is_apart);
+    append_condition(&reader->model->switches, scope->relevance);
+    factor = piecewise_function(scope, MAXIMUM, factor, ZERO, line);
+    scope->relevance = ONE;
+  }
   Node force = multiply(graph, multiply(graph, law->stiffness, negate(graph, gap)), factor);
   return choose_node(graph, is_apart, ZERO, force);
 }
@@ -319,6 +324,14 @@ static void guard_load(struct Graph *graph, struct ContactLoad *load, Node touch
   }
 }
 
+/* Returns a mode that is positive while a point does not touch. */
+static Node mode_apart(struct Scope *scope, long line, Node are_near, Node gap) {
+  scope->relevance = are_near;
+  Node is_apart = branch_of(scope, gap, "the gap of the contact", line);
+  scope->relevance = ONE;
+  return choose_node(scope->graph, are_near, is_apart, ONE);
+}
+
 /* Returns the load. A point is apart where its mode is 1, so that the modes of n points add up to n unless one touches. */
 static struct ContactLoad load_of_contact(struct Reader *reader, long line, const struct CompliantLaw *law,
                                           const struct ShapeContact *contact, Node *touches) {
@@ -328,11 +341,12 @@ static struct ContactLoad load_of_contact(struct Reader *reader, long line, cons
   *touches = graph_constant(graph, (double)contact->contacts.count);
   for (size_t i = 0; i < contact->contacts.count; i++) {
     const struct ContactPoint *point = &contact->contacts.items[i];
-    Node is_apart = branch_of(reader->scope, point->gap, "the gap of the contact", line);
+    Node is_apart = mode_apart(reader->scope, line, contact->contacts.are_near, point->gap);
     Node pressing = pressing_force(reader, line, law, point->gap, is_apart);
     add_to_load(graph, &load, point, pressing, force_of_contact(graph, law, contact, point, pressing));
     *touches = subtract(graph, *touches, is_apart);
   }
+  append_condition(&reader->model->switches, *touches);
   guard_load(graph, &load, *touches);
   return load;
 }

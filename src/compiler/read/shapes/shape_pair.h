@@ -22,6 +22,7 @@ struct ContactSide {
 struct ContactPoints {
   struct ContactPoint *items;
   size_t count;
+  Node are_near;                     /* positive where the shapes may touch; ONE everywhere: see reach.h */
   const struct ContactSide *carrier; /* NULL if the points move in both frames */
   struct Vector below;               /* m, from the centres to the points, along the base's axes */
 };
