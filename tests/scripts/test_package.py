@@ -326,6 +326,7 @@ def test_an_fmu_that_cannot_be_loaded(tmp_path):
 
 INTERRUPTED = """
 import os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # even if the shell of the tests ignores it, as one in the background does
 class Interrupt:
     def find_spec(self, name, *where):
         if name == MODULE:
