@@ -238,6 +238,7 @@ struct SwitchTable {
   bool feels_forces;    /* a branch depends on a constraint force */
   bool friction_varies; /* a friction force varies between events */
   bool has_last_signs;  /* some branches have is_last_sign */
+  size_t importer;      /* index of the mode that is 1 in model exchange, else 0; parameter_count for none */
   const struct BranchMetadata *branches;
   const struct ContactMetadata *contacts;
   const struct FrictionMetadata *frictions;

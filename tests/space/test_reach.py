@@ -2,6 +2,7 @@
 
 import html
 
+import fmpy
 import numpy as np
 import pytest
 from scipy.optimize import brentq
@@ -36,6 +37,15 @@ CONTACT = f'<contact name="c" between="s" and="o" stiffness="{K}" damping="{C}"/
 SCENES = {name: f'<system name="{name}">{FREE}{SHAPES[first]}{OTHERS[second][0]}{CONTACT}</system>' for name, (first, second) in PAIRS.items()}
 SCENES["Between"] = f"""<system name="Between">{FREE}{SHAPES["box"]}{OTHERS["plane"][0]}{CONTACT}<frame name="above"><translate z="5"/><rotate axis="x" angle="pi"/></frame>
   <shape name="ceiling" in="above" type="plane"/><contact name="top" between="s" and="ceiling" stiffness="{K}" damping="{C}"/></system>"""
+BALL = """<coordinate name="z" velocity="v" unit="m" start="10" velocityStart="-30"/><particle name="p" mass="0.1" z="z"/>
+  <shape name="s" in="p" type="sphere" radius="0.02"/>"""
+TARGETS = {"Bullet": '<shape name="o" type="capsule" radius="0.05" length="1" axis="x"/>', "TwoBalls": '<shape name="o" type="sphere" radius="0.05"/>'}
+SCENES |= {name: f'<system name="{name}">{BALL}{target}{CONTACT}</system>' for name, target in TARGETS.items()}
+SCENES["Rising"] = f"""<system name="Rising"><input name="u" start="-0.31" unit="m" derivatives="2"/><coordinate name="z" velocity="vz" unit="m"/>
+  <frame name="b"><translate z="z"/></frame><body name="body" in="b" mass="2"/><frame name="f"><translate z="u"/></frame>
+  {SHAPES["box"]}<shape name="o" in="f" type="plane"/>{CONTACT}</system>"""
+SCENES["PillAlong"] = f"""<system name="PillAlong">{FREE}<shape name="s" in="b" type="capsule" radius="0.1" length="0.3" axis="x"/>{OTHERS["brick"][0]}
+  {CONTACT}</system>"""
 SCENES["Upright"] = f"""<system name="Upright"><coordinate name="z" velocity="vz" unit="m" start="1"/><frame name="b"><translate z="z"/></frame>
   <body name="body" in="b" mass="2"/><shape name="s" in="b" type="box" sizeX="0.1" sizeY="0.1" sizeZ="0.2"/>{OTHERS["plane"][0]}{CONTACT}</system>"""
 
@@ -92,3 +102,34 @@ def test_a_page_shows_the_law_alone():
     page = html.unescape((fmu.unpacked("Upright") / "documentation" / "index.html").read_text())
     law = "if(1 - vz/2 > 0, 1 - vz/2, 0)"
     assert f"4*if(z - 1/10 > 0, 0, 10000*{law}*(1 - 10*z)) + 4*if(z + 1/10 > 0, 0, -10000*{law}*(10*z + 1))" in page
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_importers_notice_fast_balls(name):
+    """In 0.1 s the ball moves by 3 m, through the other shape of 10 cm. The importer sees the sign of the damping change, from the first point on."""
+    result = fmpy.simulate_fmu(fmu.archive(name), fmi_type="ModelExchange", stop_time=0.6, output_interval=0.1, relative_tolerance=1e-6, output=["v"])
+    assert result["v"][-1] == pytest.approx(speed_behind(30.0), rel=1e-3)
+
+
+def test_an_input_that_is_held_at_the_border_of_reach(open_fmu):
+    """A held input contradicts its derivative: a floor that recedes as fast again as the box that leaves it does not stop the motion."""
+    instance = open_fmu("Rising").initialize({"vz": -1.0, "der(u)": -2.0}, tolerance=1e-8)
+    for i in range(10):
+        instance.fmu.setReal(instance.vr("u"), [-0.31 - 0.2 * i])
+        instance.run(0.1 * (i + 1), 0.1)
+    assert instance.get("z") == pytest.approx(-1.0, rel=1e-12) and instance.fmu.getInteger(instance.vr("events"))[0] == 0
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-9])
+def test_a_capsule_that_spins_along_an_edge(open_fmu, tolerance):
+    """Its axis stays parallel to edges of the box, where any of their points is nearest."""
+    instance = open_fmu("PillAlong").initialize({"z": 1.0, "vz": -2.0, "r1": 1.5}, tolerance=tolerance)
+    instance.run(1.0, 1.0)
+    assert instance.get("vz") == pytest.approx(speed_behind(2.0), rel=100 * tolerance)
+
+
+def test_a_linearization_within_reach(tmp_path):
+    """Its expressions have no modes. The springs of the four lower corners act on the mass of 2 kg."""
+    (tmp_path / "system.xml").write_text(SCENES["Upright"])
+    result = fmu.lagc("--linearize", "system.xml", "--at", "z=0.09", cwd=tmp_path)
+    assert result.returncode == 0 and f"[-{4 * K / 2:.0f}, " in result.stdout

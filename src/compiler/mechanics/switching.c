@@ -463,6 +463,13 @@ static bool drop_guard(void *conditions, enum Operation operation, Node left, No
   return drops;
 }
 
+/* Replaces the modes of branches as without_branches() does, and that of importers by 0. */
+static Node without_modes(const struct Model *model, Node node) {
+  node = without_branches(model, node);
+  Node importer = model->switches.importer;
+  return importer != ZERO ? substitute_symbol(model->graph, node, importer, ZERO) : node;
+}
+
 /* Removes the guards that leave out what has no effect. Conditions may contain guards of earlier ones. */
 static Node without_conditions(const struct Model *model, Node node) {
   const struct NodeList *conditions = &model->switches.conditions;
@@ -470,11 +477,11 @@ static Node without_conditions(const struct Model *model, Node node) {
   if (shown == NULL) return node;
   const struct Rebuilding rebuilding = {model->graph, shown, drop_guard};
   for (size_t i = shown->count; i < conditions->count; i++)
-    insert_node(shown, rebuild(&rebuilding, without_branches(model, conditions->nodes[i])));
+    insert_node(shown, rebuild(&rebuilding, without_modes(model, conditions->nodes[i])));
   return rebuild(&rebuilding, node);
 }
 
 Node as_written(const struct Model *model, Node node) {
-  node = without_conditions(model, without_branches(model, node));
+  node = without_conditions(model, without_modes(model, node));
   return without_carried_forces(model, without_rests(model, node));
 }

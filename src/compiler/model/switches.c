@@ -16,6 +16,12 @@ void append_ball(struct Switches *switches, struct BallContact ball) {
   APPEND(switches->balls, switches->ball_count, ball);
 }
 
+Node mode_of_importer(struct Switches *switches, struct Graph *graph) {
+  if (switches->importer == ZERO)
+    switches->importer = graph_symbol(graph, MODE, (int)(switches->first + switches->mode_count++), "importer");
+  return switches->importer;
+}
+
 void append_condition(struct Switches *switches, Node condition) {
   if (switches->shown_conditions == NULL) switches->shown_conditions = allocate(1, sizeof *switches->shown_conditions);
   append_node(&switches->conditions, condition);

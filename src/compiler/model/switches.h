@@ -127,6 +127,7 @@ struct Switches {
   size_t ball_count;
   struct Event *events;
   size_t event_count;
+  Node importer;                     /* see mode_of_importer(); ZERO if nothing needs it */
   struct NodeList conditions;        /* see append_condition() */
   struct NodeList *shown_conditions; /* the first ones as pages would show them, ascending; NULL without conditions */
 };
@@ -136,6 +137,12 @@ void append_branch(struct Switches *switches, struct Branch branch);
 
 /* Appends a contact to the list of balls. */
 void append_ball(struct Switches *switches, struct BallContact ball);
+
+/*
+ * Returns a mode that is 1 in model exchange, else 0. An importer compares indicators at the ends of its steps alone. It
+ * may step over a contact whose indicators are constant on both sides.
+ */
+Node mode_of_importer(struct Switches *switches, struct Graph *graph);
 
 /* Appends a condition of guards that leave out what has no effect elsewhere: pages do not show them. */
 void append_condition(struct Switches *switches, Node condition);

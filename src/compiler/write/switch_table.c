@@ -38,7 +38,7 @@ static const struct ElementType
 
 /* All fields but functions, laws and rests_on. */
 static const struct ElementType switch_fields = STRUCT_TYPE(
-    SwitchTable, FIELD(SwitchTable, mode_count), FIELD(SwitchTable, branch_count),
+    SwitchTable, FIELD(SwitchTable, mode_count), FIELD(SwitchTable, importer), FIELD(SwitchTable, branch_count),
     ARRAY_FIELD(SwitchTable, branches, branch_count, "branch_metadata", branches), FIELD(SwitchTable, contact_count),
     ARRAY_FIELD(SwitchTable, contacts, contact_count, "contact_metadata", contacts), FIELD(SwitchTable, friction_count),
     ARRAY_FIELD(SwitchTable, frictions, friction_count, "friction_metadata", frictions),

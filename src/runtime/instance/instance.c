@@ -45,6 +45,9 @@ void instance_reset(struct Instance *instance) {
     if (variable->kind == VARIABLE_PARAMETER || variable->kind == VARIABLE_MODE)
       instance->parameter[variable->index] = variable->start;
   }
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (switches != NULL && switches->importer < lagrangian.parameter_count)
+    instance->parameter[switches->importer] = instance->kind == KIND_MODEL_EXCHANGE ? 1.0 : 0.0;
   memset(instance->largest_input, 0, lagrangian.input_count * sizeof *instance->largest_input);
   initial_state_follow(instance);
   instance->fmu_state->changed = CHANGED_VALUES;

@@ -157,6 +157,8 @@ struct SwitchTable switch_metadata_of(const struct Program *program) {
                                  .timed_count = switching->timed_count,
                                  .affine_count = switching->affine_count,
                                  .sample_count = switching->sample_count};
+  metadata.importer = program->model->parameters.count + switches->mode_count;
+  if (switches->importer != ZERO) metadata.importer = mode_index(program, switches->importer);
   if (metadata.branch_count > 0) metadata.branches = branches_of(program);
   if (metadata.contact_count > 0) metadata.contacts = contacts_of(program);
   if (metadata.friction_count > 0) metadata.frictions = frictions_of(program);

@@ -126,7 +126,9 @@ static struct NearestPoints nearest_points_of(const struct ShapePair *pair, cons
   struct Vector u = first->direction, w = second->direction,
                 between = vector_subtract(graph, first->middle, second->middle);
   Node uw = vector_dot(graph, u, w), along_u = vector_dot(graph, between, u), along_w = vector_dot(graph, between, w);
-  Node skew = subtract(graph, graph_constant(graph, 1.0 + nothing), power_number(graph, uw, 2.0));
+  /* The squared sine is not negative by rounding, as 1 - uw^2 may be. */
+  struct Vector product = vector_cross(graph, u, w);
+  Node skew = add(graph, graph_constant(graph, nothing), vector_dot(graph, product, product));
   if (spreads)
     skew = piecewise_function_for(pair->scope, MAXIMUM, skew, graph_constant(graph, nearly), purpose_of_pair(pair),
                                   pair->line);

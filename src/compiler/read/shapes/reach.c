@@ -2,13 +2,14 @@
  * Shapes out of each other's reach have no contact points to look for. A ball about each shape decides that: a mode says
  * whether the balls overlap, and the branches of the contact matter only while they do. The mode switches at an event as
  * any other one. So no contact is missed, and the points of distant shapes are not computed. (C. Ericson, Real-Time
- * Collision Detection, 2005, section 4.3.)
+ * Collision Detection, 2005, section 4.3.) In model exchange shapes always are in reach: see mode_of_importer().
  */
 #include "read/shapes/reach.h"
 
 #include <math.h>
 
 #include "algebra/simplify.h"
+#include "model/switches.h"
 #include "names/piecewise_functions.h"
 #include "read/shapes/plane_points.h"
 
@@ -78,23 +79,26 @@ static Node overlap_of_balls(struct Graph *graph, const struct Ball *first, cons
   return subtract(graph, power_number(graph, reach, 2.0), vector_dot(graph, apart, apart));
 }
 
-/* True if a ball about each shape is cheaper than the contact points. */
+/* True if a ball about each shape is cheaper than the contact points, and modes may decide. */
 static bool is_worth_a_ball(const struct ShapePair *pair) {
   const struct ContactShape *first = pair->first->shape, *second = pair->second->shape;
-  if (pair->is_rigid) return false;
+  if (pair->is_rigid || pair->scope->switches == NULL) return false;
   if (second->type == SHAPE_PLANE) return count_points_on_plane(first) >= LEAST_POINTS;
   return first->type != SHAPE_SPHERE || second->type != SHAPE_SPHERE;
 }
 
+static Node overlap_of(const struct ShapePair *pair) {
+  struct Ball ball = ball_about(pair, pair->first);
+  if (pair->second->shape->type == SHAPE_PLANE) return overlap_with_plane(pair, &ball);
+  struct Ball other = ball_about(pair, pair->second);
+  return overlap_of_balls(pair->graph, &ball, &other);
+}
+
 Node are_near(const struct ShapePair *pair) {
+  struct Graph *graph = pair->graph;
   if (!is_worth_a_ball(pair)) return ONE;
-  struct Ball ball = ball_about(pair, pair->first), other;
-  Node overlap;
-  if (pair->second->shape->type == SHAPE_PLANE) {
-    overlap = overlap_with_plane(pair, &ball);
-  } else {
-    other = ball_about(pair, pair->second);
-    overlap = overlap_of_balls(pair->graph, &ball, &other);
-  }
-  return branch_of(pair->scope, overlap, "the reach of a contact", pair->line);
+  Node overlap = overlap_of(pair), importer = mode_of_importer(pair->scope->switches, graph);
+  /* An input that is held may contradict its derivative, which would switch the mode to and fro. */
+  if (graph_depends_on(graph, overlap, INPUT)) return ONE;
+  return branch_of(pair->scope, choose_node(graph, importer, ONE, overlap), "the reach of a contact", pair->line);
 }

@@ -264,6 +264,15 @@ struct FrictionCoefficients read_grip(struct Reader *reader, xmlNodePtr node) {
   return grip;
 }
 
+/* Returns a condition that is positive where the sign of the damped force matters. */
+static Node where_pressed(struct Scope *scope, Node is_apart) {
+  struct Graph *graph = scope->graph;
+  if (scope->switches == NULL) return ONE;
+  Node condition = choose_node(graph, mode_of_importer(scope->switches, graph), ONE, negate(graph, is_apart));
+  append_condition(scope->switches, condition);
+  return condition;
+}
+
 /*
  * Returns the normal force stiffness depth (1 + damping d depth/dt) during contact, and 0 if that is negative: contacts
  * do not pull. is_apart: positive where there is no contact.
@@ -274,8 +283,7 @@ static Node pressing_force(struct Reader *reader, long line, const struct Compli
   Node rate = negate(graph, total_time_derivative(scope, gap));
   Node factor = add(graph, ONE, multiply(graph, law->damping, rate));
   if (law->damping != ZERO) {
-    scope->relevance = negate(graph, is_apart);
-    append_condition(&reader->model->switches, scope->relevance);
+    scope->relevance = where_pressed(scope, is_apart);
     factor = piecewise_function(scope, MAXIMUM, factor, ZERO, line);
     scope->relevance = ONE;
   }
