@@ -30,8 +30,7 @@ void substitute_in_observers(struct Model *model, const Node *replacements) {
 /* Appends a velocity with a new mode, and returns this mode. */
 static Node append_resting(struct Model *model, const char *name, struct RestingVelocity resting) {
   struct Switches *switches = &model->switches;
-  int index = (int)(switches->first + switches->mode_count++);
-  resting.mode = graph_symbol(model->graph, MODE, index, format_text("%s.moves", name));
+  resting.mode = next_mode(switches, model->graph, format_text("%s.moves", name));
   APPEND(switches->resting, switches->resting_count, resting);
   return resting.mode;
 }

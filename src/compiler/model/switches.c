@@ -16,9 +16,12 @@ void append_ball(struct Switches *switches, struct BallContact ball) {
   APPEND(switches->balls, switches->ball_count, ball);
 }
 
+Node next_mode(struct Switches *switches, struct Graph *graph, const char *name) {
+  return graph_symbol(graph, MODE, (int)(switches->first + switches->mode_count++), name);
+}
+
 Node mode_of_importer(struct Switches *switches, struct Graph *graph) {
-  if (switches->importer == ZERO)
-    switches->importer = graph_symbol(graph, MODE, (int)(switches->first + switches->mode_count++), "importer");
+  if (switches->importer == ZERO) switches->importer = next_mode(switches, graph, "importer");
   return switches->importer;
 }
 

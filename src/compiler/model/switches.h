@@ -138,6 +138,9 @@ void append_branch(struct Switches *switches, struct Branch branch);
 /* Appends a contact to the list of balls. */
 void append_ball(struct Switches *switches, struct BallContact ball);
 
+/* Returns the next mode, in the order of their numbers. */
+Node next_mode(struct Switches *switches, struct Graph *graph, const char *name);
+
 /*
  * Returns a mode that is 1 in model exchange, else 0. An importer compares indicators at the ends of its steps alone. It
  * may step over a contact whose indicators are constant on both sides.

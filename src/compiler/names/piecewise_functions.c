@@ -40,7 +40,7 @@ static Node mode_of(struct Scope *scope, Node indicator, const char *function, l
     if (switches->branches[i].indicator == indicator && switches->branches[i].is_last_sign == is_last_sign)
       return switches->branches[i].mode;
   char *name = format_text("%s in line %ld", function, line);
-  Node mode = graph_symbol(scope->graph, MODE, (int)(switches->first + switches->mode_count++), name);
+  Node mode = next_mode(switches, scope->graph, name);
   append_branch(switches, (struct Branch){.mode = mode,
                                           .indicator = indicator,
                                           .kinds = deciding_kinds(scope, indicator),

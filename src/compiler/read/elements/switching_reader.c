@@ -19,9 +19,7 @@ enum { IN_GAP = IN_CONSTRAINT & ~KIND(VELOCITY) };
 /* --- Declarations --- */
 
 Node new_mode(struct Reader *reader, const char *of, const char *what) {
-  struct Switches *switches = &reader->model->switches;
-  return graph_symbol(reader->model->graph, MODE, (int)(switches->first + switches->mode_count++),
-                      format_text("%s.%s", of, what));
+  return next_mode(&reader->model->switches, reader->model->graph, format_text("%s.%s", of, what));
 }
 
 /* Adds a mode that expressions know by name: the observed mode of a contact or friction, a variable of the FMU. */

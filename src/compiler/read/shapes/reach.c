@@ -97,8 +97,9 @@ static Node overlap_of(const struct ShapePair *pair) {
 Node are_near(const struct ShapePair *pair) {
   struct Graph *graph = pair->graph;
   if (!is_worth_a_ball(pair)) return ONE;
-  Node overlap = overlap_of(pair), importer = mode_of_importer(pair->scope->switches, graph);
-  /* An input that is held may contradict its derivative, which would switch the mode to and fro. */
+  Node overlap = overlap_of(pair);
+  /* A held input may contradict its derivative. The mode would then switch without end (Zeno behaviour). */
   if (graph_depends_on(graph, overlap, INPUT)) return ONE;
+  Node importer = mode_of_importer(pair->scope->switches, graph);
   return branch_of(pair->scope, choose_node(graph, importer, ONE, overlap), "the reach of a contact", pair->line);
 }
