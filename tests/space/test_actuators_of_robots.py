@@ -52,6 +52,10 @@ FLAGGED = f"""<mujoco model="m"><option gravity="3 0 0"><flag {{flag}}="disable"
 <body name="b" gravcomp="1"><joint name="b" type="slide" axis="1 0 0"/>{BOX}</body></worldbody>
 <actuator><motor name="u" joint="a" ctrlrange="-5 5"/></actuator><equality><joint joint1="b" joint2="a" polycoef="0 1 0 0 0" active="true"/></equality>
 <keyframe><key name="k" qvel="0.5 0.5" ctrl="9"/></keyframe></mujoco>"""
+# A slide of 2 kg with adhesions, which press it to nothing.
+STUCK = f"""<mujoco model="m"><option gravity="0 0 0"/><worldbody><body name="a"><joint name="a" type="slide" axis="1 0 0"/>{BOX}</body></worldbody>
+<actuator><adhesion name="hold" body="a" ctrlrange="0 1" gain="5"/><motor name="push" joint="a"/><general body="a" ctrlrange="0 2" gainprm="3"/></actuator>
+<keyframe><key name="k" ctrl="0.5 6 2"/></keyframe></mujoco>"""
 FORCES = {"gravity": 3.0, "spring": 1.0, "damper": -1.0, "frictionloss": -0.6, "actuation": 5.0}
 TOTAL = sum(FORCES.values())
 FLAGS = {name: (TOTAL - force) / 4 for name, force in FORCES.items()} | {
@@ -80,8 +84,9 @@ def built():
     texts |= {name: f'<system name="{name}"><include file="m.xml" as="m" {words}/></system>' for name, words in cones.items()}
     texts |= {f"Without{flag.title()}": f'<system name="Without{flag.title()}"><include file="m.xml" as="m" friction="sticks" limits="stops" keyframe="k"/></system>' for flag in FLAGS}
     texts["Least"] = '<system name="Least"><include file="m.xml" as="m"/></system>'
+    texts["Stuck"] = '<system name="Stuck"><include file="m.xml" as="m" keyframe="k"/></system>'
     texts["Led"] = '<system name="Led"><include file="led.xml" as="m" mocap="inputs" base="floating"/></system>'
-    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED, "Least/m.xml": LEAST} | {f"Without{flag.title()}/m.xml": FLAGGED.format(flag=flag) for flag in FLAGS} | { "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Limited/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
+    build_systems("actuators", texts, files={f"{name}/m.xml": FILE for name in SYSTEMS} | {"Led/led.xml": LED, "Carried/m.xml": CARRIED, "Least/m.xml": LEAST, "Stuck/m.xml": STUCK} | {f"Without{flag.title()}/m.xml": FLAGGED.format(flag=flag) for flag in FLAGS} | { "Ranged/m.xml": RANGED, "Turned/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Tilted/m.xml": CONE.format(gravity="9.81 0 0", damping=3, arm=-0.5), "Beyond/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0), "Limited/m.xml": CONE.format(gravity="0 0 0", damping=0, arm=0)})
 
 
 def test_a_filter(open_fmu):
@@ -105,6 +110,12 @@ def test_activations_of_a_key(open_fmu):
     instance = open_fmu("Key").initialize({})
     names = ("lag_control_activation", "sum_control_activation", "lag_control", "sum_control")
     assert instance.get(*(f"m.{name}" for name in names)) == [0.5, -0.5, 3, 4]
+
+
+def test_adhesion_where_nothing_touches(open_fmu):
+    """Its inputs remain, as the keyframe lists them, and only the motor's 6 N act."""
+    instance = open_fmu("Stuck").initialize({})
+    assert instance.get("m.hold_control", "m.push_control", "m.a_control", "der(m.a_velocity)") == [0.5, 6, 2, 3]
 
 
 def test_friction_of_a_free_joint(open_fmu):

@@ -130,6 +130,13 @@ def test_bad_keyframe(key, line, message, tmp_path):
     assert result.returncode == 1 and re.search(rf"^arm\.xml:{line}: {re.escape(message)}", result.stderr, re.MULTILINE), result.stderr
 
 
+def test_adhesion_on_the_ground(tmp_path):
+    (tmp_path / "arm.xml").write_text(RIGHT.replace('<motor name="push" joint="elbow" gear="2"/>', '<adhesion body="lower" ctrlrange="0 1"/>'))
+    (tmp_path / "system.xml").write_text('<system name="S"><include file="arm.xml" as="arm" ground="true"/></system>')
+    message = "<adhesion> is not read, and would change the motion; expected a <force> on the body in a <system>"
+    assert re.search(rf"^arm\.xml:15: {re.escape(message)}", lagc("system.xml", "-o", "out", cwd=tmp_path).stderr, re.MULTILINE)
+
+
 def test_no_world(tmp_path):
     check(tmp_path, "<mujoco>\n</mujoco>", 1, "<mujoco> has no <worldbody>; expected one in it")
     check(tmp_path, "<mujoco>\n<worldbody/></mujoco>", 1, "no joint of the robot moves")

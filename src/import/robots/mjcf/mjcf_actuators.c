@@ -135,10 +135,9 @@ static struct Transmission transmission_of(struct Mjcf *mjcf, xmlNodePtr node, c
   struct TransmissionTerm *term = allocate(1, sizeof *term);
   *term = (struct TransmissionTerm){.coefficient = 1};
   bool is_at_joint = !has_attribute(node, "tendon");
-  const char *other = has_attribute(node, "cranksite") ? "a crank" : has_attribute(node, "body") ? "a body" : NULL;
-  if (is_at_joint && other != NULL && !has_attribute(node, joint_attribute(node)))
-    mjcf_error(mjcf, node, "<%s> at %s is not read; expected it at a joint, tendon or site", (const char *)node->name,
-               other);
+  if (is_at_joint && has_attribute(node, "cranksite") && !has_attribute(node, joint_attribute(node)))
+    mjcf_error(mjcf, node, "<%s> at a crank is not read; expected it at a joint, tendon or site",
+               (const char *)node->name);
   else if (is_at_joint) term->joint_name = required_attribute(&mjcf->file, node, joint_attribute(node));
   return (struct Transmission){.terms = term, .count = is_at_joint};
 }
@@ -192,7 +191,7 @@ static bool is_taken(const struct Robot *robot, const char *name) {
 
 /* Returns the name of an actuator: its own, or that of its joint, tendon or site, with a number behind further ones. */
 static char *name_actuator(const struct Robot *robot, xmlNodePtr node) {
-  static const char *const names[] = {"name", "tendon", "joint", "jointinparent", "site"};
+  static const char *const names[] = {"name", "tendon", "joint", "jointinparent", "site", "body"};
   char *first = NULL;
   for (size_t i = 0; i < sizeof names / sizeof *names && first == NULL; i++) first = attribute(node, names[i]);
   char *name = first;
@@ -201,34 +200,26 @@ static char *name_actuator(const struct Robot *robot, xmlNodePtr node) {
   return name;
 }
 
-void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
-  struct Robot *robot = mjcf->file.robot;
-  size_t kind = kind_of(node);
-  if (kind == KINDS) {
-    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint, tendon or site");
-    return;
-  }
-  const char *tendon_name = attribute(node, "tendon");
-  const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
-  double gear[6] = {1};
-  mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
-  struct Actuator actuator = {.name = name_actuator(robot, node),
-                              .line = line_of(node),
-                              .gear = gear[0],
-                              .wrench = wrench_of(mjcf, node, gear)};
-  if (actuator.wrench == NULL) actuator.transmission = transmission_of(mjcf, node, tendon);
-  mjcf_check_laws(mjcf, node);
-  kinds[kind].read(mjcf, node, &actuator);
-  if (actuator.wrench != NULL) check_wrench(mjcf, node, &actuator);
-  mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
-  mjcf_limits(mjcf, node, "actrange", "actlimited", actuator.activation);
-  if (is_element(node, "position")) inherit_range(mjcf, node, tendon, "ctrl", actuator.control);
-  else if (is_element(node, "intvelocity")) inherit_range(mjcf, node, tendon, "act", actuator.activation);
-  else mjcf_reject(mjcf, node, "inheritrange");
-  mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
-  check_limited_joints(mjcf, node, &actuator);
-  double group = mjcf_number(mjcf, node, "group", 0);
-  if (group >= 0 && group < ACTUATOR_GROUPS && mjcf->is_off[(size_t)group]) mjcf_switch_off(&actuator);
+/* True if the actuator is adhesion, which presses the shapes of a body to those that they touch. */
+static bool is_adhesion(xmlNodePtr node) {
+  return is_element(node, "adhesion") || (is_element(node, "general") && has_attribute(node, "body"));
+}
+
+/* Reads an adhesion as a force of size 0 where no shapes touch, so that its input remains. Reports it where they do. */
+static void read_adhesion(struct Mjcf *mjcf, xmlNodePtr node, struct Actuator *actuator) {
+  const struct RobotOptions *options = mjcf->file.options;
+  actuator->wrench = allocate(1, sizeof *actuator->wrench);
+  actuator->wrench->names[WRENCH_LINK] = required_attribute(&mjcf->file, node, "body");
+  if (options->has_ground || options->has_self)
+    mjcf_report_unknown(mjcf, node, "a <force> on the body in a <system> that includes the robot");
+  else
+    report_warning(mjcf->file.diagnostics, actuator->line,
+                   "the adhesion '%s' has no effect, as the shapes of the body '%s' touch nothing; remove it",
+                   actuator->name, actuator->wrench->names[WRENCH_LINK]);
+}
+
+/* Reports attributes that are not read. */
+static void reject_attributes(struct Mjcf *mjcf, xmlNodePtr node) {
   mjcf_reject(mjcf, node, "delay damping armature");
   if (mjcf_number(mjcf, node, "actdim", 1) > 1)
     mjcf_error(mjcf, node, "actdim of <%s> is above 1; expected an actuator with one activation",
@@ -237,5 +228,41 @@ void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
     mjcf_error(mjcf, node,
                "refsite=\"%.60s\" of <%s> is not read; expected a <spatial> tendon from site to site, or a <joint>",
                mjcf_text(mjcf, node, "refsite"), (const char *)node->name);
+}
+
+/* Reads an actuator at a joint, tendon or site. */
+static void read_force(struct Mjcf *mjcf, xmlNodePtr node, size_t kind, struct Actuator *actuator) {
+  const char *tendon_name = attribute(node, "tendon");
+  const struct Tendon *tendon = tendon_name != NULL ? mjcf_tendon(mjcf, node, tendon_name) : NULL;
+  double gear[6] = {1};
+  mjcf_numbers(mjcf, node, "gear", 1, 6, gear);
+  actuator->gear = gear[0];
+  actuator->wrench = wrench_of(mjcf, node, gear);
+  if (actuator->wrench == NULL) actuator->transmission = transmission_of(mjcf, node, tendon);
+  mjcf_check_laws(mjcf, node);
+  kinds[kind].read(mjcf, node, actuator);
+  if (actuator->wrench != NULL) check_wrench(mjcf, node, actuator);
+  if (is_element(node, "position")) inherit_range(mjcf, node, tendon, "ctrl", actuator->control);
+  else if (is_element(node, "intvelocity")) inherit_range(mjcf, node, tendon, "act", actuator->activation);
+  else mjcf_reject(mjcf, node, "inheritrange");
+  check_limited_joints(mjcf, node, actuator);
+  double group = mjcf_number(mjcf, node, "group", 0);
+  if (group >= 0 && group < ACTUATOR_GROUPS && mjcf->is_off[(size_t)group]) mjcf_switch_off(actuator);
+  reject_attributes(mjcf, node);
+}
+
+void mjcf_read_actuator(struct Mjcf *mjcf, xmlNodePtr node) {
+  struct Robot *robot = mjcf->file.robot;
+  struct Actuator actuator = {.name = name_actuator(robot, node), .line = line_of(node)};
+  size_t kind = kind_of(node);
+  if (kind == KINDS && !is_adhesion(node)) {
+    mjcf_report_unknown(mjcf, node, "<motor>, <position>, <velocity> or <general> at a joint, tendon or site");
+    return;
+  }
+  mjcf_limits(mjcf, node, "ctrlrange", "ctrllimited", actuator.control);
+  mjcf_limits(mjcf, node, "actrange", "actlimited", actuator.activation);
+  mjcf_limits(mjcf, node, "forcerange", "forcelimited", actuator.force);
+  if (is_adhesion(node)) read_adhesion(mjcf, node, &actuator);
+  else read_force(mjcf, node, kind, &actuator);
   APPEND(robot->actuators, robot->actuator_count, actuator);
 }
