@@ -1,7 +1,7 @@
 """Fixtures for the built FMUs, of which every test uses the packed archives, and reports of sizes and times."""
 
 import os
-from collections import Counter
+from collections import Counter, defaultdict
 
 import pytest
 
@@ -26,6 +26,19 @@ def pytest_generate_tests(metafunc):
     )
     if "name" in metafunc.fixturenames and not named:
         metafunc.parametrize("name", fmu.all_names())
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(items):
+    """Of a test of many systems, only those of each kind are daily; the others are long."""
+    further = set(fmu.all_names() + fmu.further_names()).difference(fmu.OF_EACH_KIND)
+    named = [(item, item.callspec.params["name"]) for item in items if hasattr(item, "callspec") and "name" in item.callspec.params]
+    tested = defaultdict(set)  # systems by function
+    for item, name in named:
+        tested[item.function].add(name)
+    for item, name in named:
+        if name in further and len(tested[item.function]) > 2 * len(fmu.OF_EACH_KIND):
+            item.add_marker(pytest.mark.long)
 
 
 def processor_seconds():

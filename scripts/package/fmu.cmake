@@ -5,8 +5,8 @@
 #   lagrange_licenses      the folder of collect_licenses()
 #   lagrange_sundials      the folder of cross.py sundials, which may be missing
 get_filename_component(lagrange_root ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
-find_program(zip zip REQUIRED)
 find_program(python python3 REQUIRED)
+set(lagrange_pack ${python} -B -m scripts.package.pack) # in ${lagrange_root}
 
 # Removes unused functions, and tables for unwinding the stack, which C does not need.
 set(lagrange_compact -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables)
@@ -111,18 +111,17 @@ function(add_archive name version folder system platforms)
   endif()
   set(scripts ${lagrange_root}/scripts/package)
   add_custom_command(OUTPUT ${fmu}
-                     COMMAND ${CMAKE_COMMAND} -D FOLDER=${folder} "-D LIBRARIES=${libraries}" -D FMU=${fmu} -D VERSION=${version}
-                             -D SYSTEM=${system} -D SOURCE=${lagrange_root} -D ZIP=${zip} -D PYTHON=${python} -D NAMES=${lagrange_global_names}
-                             -D LICENSES=${lagrange_licenses} -P ${scripts}/pack.cmake
-                     DEPENDS ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.cmake
-                             ${scripts}/archive.cmake ${scripts}/licenses.cmake ${scripts}/one_file.py ${lagrange_root}/LICENSE
-                     COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
+                     COMMAND ${lagrange_pack} fmu ${folder} ${version} ${fmu} --libraries ${libraries} --names ${lagrange_global_names}
+                             --licenses ${lagrange_licenses} --system ${system}
+                     DEPENDS ${libraries} ${folder}/system.c ${lagrange_global_names} ${scripts}/pack.py ${scripts}/one_file.py
+                             ${lagrange_root}/LICENSE
+                     WORKING_DIRECTORY ${lagrange_root} COMMENT "Packing ${name}.fmu of FMI ${version}" VERBATIM)
   add_custom_target(${target} ALL DEPENDS ${fmu})
   add_dependencies(${target} derive_${name}) # otherwise each FMU would derive the system
 endfunction()
 
 # lagrange_add_fmu(NAME SYSTEM.xml [PLATFORMS platform...] [FMI_VERSIONS version...] [SOLVER method] [FORM form] [ARRAYS] [ROBOT word=value...])
-# builds fmu/NAME.fmu for FMI 2, and fmi3/NAME.fmu for FMI 3, in the current binary folder. NAME must be the name in SYSTEM.xml; pack.cmake
+# builds fmu/NAME.fmu for FMI 2, and fmi3/NAME.fmu for FMI 3, in the current binary folder. NAME must be the name in SYSTEM.xml; pack.py
 # checks this.
 #   PLATFORMS     linux64 (glibc 2.17 or newer), win64, darwin64 (both processors), aarch64-linux, and for FMI 3 wasm32, compiled by zig;
 #                 default: this machine, by the project's compiler

@@ -75,7 +75,8 @@ def one_file(root, global_names, version, system, name):
     text = re.sub(r"\n{3,}", "\n\n", text)
     symbols = sorted({*re.findall(r"([A-Za-z0-9_]+) [A-Z] ", global_names.read_text()), "lagrangian"})
     functions = [symbol for symbol in symbols if symbol.startswith(f"fmi{version}")]
-    names = [symbol for symbol in symbols if not re.match("fmi[0-9]", symbol) and symbol in text]
+    words = set(re.findall(r"\w+", text))
+    names = [symbol for symbol in symbols if not re.match("fmi[0-9]", symbol) and symbol in words]
     return HEAD.format(
         license=re.sub(r" \* $", " *", (root / "LICENSE").read_text().strip().replace("\n", "\n * "), flags=re.M),
         name=name,

@@ -7,7 +7,8 @@ from pathlib import Path
 import fmpy
 
 import fmu
-from building import SPEED, library_in, library_words, pack_words
+from building import SPEED, library_in, library_words
+from building import pack as pack_archive
 
 TIME_LIMIT = 300  # s, for one program
 
@@ -51,9 +52,7 @@ def compile_system(system, folder):
 def pack(system, folder, library):
     """Pack the FMU as users get it, and unpack it by FMPy."""
     archive, content = folder / f"{system.name}.fmu", folder / "fmu"
-    result = run(pack_words(content, library, archive, 2), "pack.cmake")
-    if result.returncode != 0:
-        raise Wrong(f"pack.cmake: {result.stderr[:1000]}")
+    pack_archive(content, library, archive, 2)
     unpacked = fmpy.extract(str(archive), str(folder / "unpacked"))
     source = Path(unpacked) / "sources" / f"{system.name}.c"
     if source.exists() and (complaints := fmu.complaints_about(source, system.plan.compiler)):

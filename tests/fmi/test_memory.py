@@ -35,12 +35,12 @@ def test_threads(name):
     run([BUILD / "threads" / "bin" / "threads", words[1], words[2]])
 
 
-@pytest.mark.parametrize("name", fmu.one_of_each_kind(fmu.small_names()))
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_life_under_sanitizers(name):
     run(words_for(name, SANITIZED), **CLEAN)
 
 
-@pytest.mark.parametrize("name", fmu.one_of_each_kind(fmu.small_names()))
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_life_under_valgrind(name):
     flags = ["--error-exitcode=9", "--leak-check=full", "--show-leak-kinds=all", "--errors-for-leak-kinds=all", "-q"]
     run(["valgrind", *flags, *words_for(name, BUILD)])
@@ -51,7 +51,7 @@ def arguments_for_failures(name, build, library):
     return [build / "bin" / "out_of_memory", library, fmu.description(name).guid, str(output)]
 
 
-@pytest.mark.parametrize("name", fmu.one_of_each_kind(fmu.small_names()))
+@pytest.mark.parametrize("name", fmu.small_names())
 def test_every_allocation_fails_once(name):
     """Each allocation fails in turn: the FMU logs a message, leaks nothing, and works after a reset."""
     library = SANITIZED / "systems" / name / "binaries" / "linux64" / f"{name}.so"
@@ -91,7 +91,7 @@ def test_every_allocation_of_sundials_fails_once(solver, rows_of_springs):
     assert int(re.match(r"(\d+) allocations", result.stdout).group(1)) > 60
 
 
-@pytest.mark.parametrize("name", fmu.one_of_each_kind(fmu.all_names()))
+@pytest.mark.parametrize("name", fmu.all_names())
 def test_lagc_under_sanitizers(name, tmp_path):
     run([SANITIZED / "bin" / "lagc", ROOT / "fmu" / name / "system.xml", "-o", tmp_path], **CLEAN)
 

@@ -3,6 +3,7 @@
 import re
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import fmpy
@@ -70,8 +71,9 @@ def test_folder_name_must_match(start, tmp_path):
     """The name must match however it is written; lagc of the existing build is used."""
     folder = tmp_path / "Other"
     assert lagc("-o", folder, system_file(tmp_path, f'{start}"Mine"><input name="u"/><output name="y">u</output></system>')).returncode == 0
-    words = ["cmake", "-D", f"FOLDER={folder}", "-D", f"LIBRARIES={folder}/Other.so", "-D", "SYSTEM=Other/system.xml"]
-    result = subprocess.run([*words, "-P", ROOT / "scripts" / "package" / "pack.cmake"], capture_output=True, text=True)
+    words = [sys.executable, "-m", "scripts.package.pack", "fmu", folder, "2", tmp_path / "Other.fmu", "--libraries", folder / "Other.so"]
+    words += ["--names", "none", "--licenses", "none", "--system", "Other/system.xml"]
+    result = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     assert result.returncode != 0
     assert "Other/system.xml: the system is named 'Mine'; expected 'Other', as its folder or lagrange_add_fmu() names it" in " ".join(result.stderr.split())
 

@@ -17,7 +17,6 @@ from scripts.commands.live import LABORATORY
 from scripts.library.live_page.editor import editor_of, files_of
 
 STEPS = 100
-DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "MotorPendulum", "SimplePendulumLinear", "StickSlip"]
 ALL = sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
 
 
@@ -88,7 +87,7 @@ def method_of(name):
     return solver.get("method") if solver is not None else "auto"
 
 
-@pytest.mark.parametrize("name", [name if name in DAILY else pytest.param(name, marks=pytest.mark.release) for name in ALL])
+@pytest.mark.parametrize("name", ALL)
 def test_it_is_the_fmu(name, tmp_path):
     """The laboratory, which interprets instruction tables, gives the result of the compiled FMU."""
     laboratory = Laboratory(ROOT / "fmu", tmp_path / "errors")

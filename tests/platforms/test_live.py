@@ -21,7 +21,6 @@ from scripts.library.live_page.page import page_of
 from scripts.library.simulation import settings_of
 
 PULLED = ["SimplePendulum", "DoublePendulum", "FourBar"]  # for others compiling the second module takes minutes
-DAILY = ["DoublePendulum", "BouncingBall", "FourBar", "Gyrocompass"]
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +68,7 @@ def test_modules_are_kept(monkeypatch, tmp_path):
     assert compiled[3:] == ["three"] and len(list(cache.iterdir())) == 2
 
 
-@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in DAILY else pytest.mark.release) for name in fmu.moving_names()])
+@pytest.mark.parametrize("name", fmu.moving_names())
 def test_the_page_is_the_fmu(browser, page_file, name):
     """
     The states after 10 s, or before the bars lie flat, where they could fold, are those of the native FMU. C libraries may differ in the last place

@@ -1,6 +1,6 @@
 """
 Build FMUs of systems that tests write themselves, without CMake. The steps are lagc, one call of a compiler with the flags of scripts/package/fmu.cmake, and
-pack.cmake, with the tools of an existing build. CMake alone would take as long per FMU as the C compiler.
+scripts/package/pack.py, with the tools of an existing build. CMake alone would take as long per FMU as the C compiler.
 """
 
 import ctypes
@@ -11,10 +11,11 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
+
+from scripts.package.pack import fmu_of, write
 
 ROOT = Path(__file__).resolve().parent.parent.parent
 BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
@@ -24,7 +25,7 @@ WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -Wno-unused-p
 COMPILED = "-std=gnu11 -ffp-contract=off -fPIC -fvisibility=hidden -ffunction-sections -fdata-sections -fno-asynchronous-unwind-tables".split()
 LINKED = "-shared -s -Wl,--gc-sections -Wl,--exclude-libs,ALL -Wl,--as-needed -Wl,--no-undefined".split()
 LINKED += [f"-Wl,--wrap={function}" for function in ("malloc", "calloc", "realloc", "free")]
-SPEED = ["-O1"]  # halves the compile time; the systems of fmu/ are built with the release flags
+SPEED = ["-O0"]  # a third of the compile time; the systems of fmu/ are built with the release flags
 
 built_by_tests = {}  # archive by name of the system
 
@@ -64,7 +65,7 @@ def runtime(version):
 def runtime_digest():
     """Return a hash that changes with the runtime."""
     files = [BUILD / "libsolvers.a", *(path for layer in ("core", "fmi2", "fmi3") for path in (BUILD / "CMakeFiles" / f"{layer}.dir").rglob("*.o"))]
-    files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts" / "package").glob("*.cmake"), Path(__file__)]
+    files += [*(ROOT / "include").glob("*.h"), *(ROOT / "src" / "runtime").rglob("*.[ch]"), *(ROOT / "scripts" / "package").glob("*.py"), Path(__file__)]
     return hashlib.sha256("".join(f"{path} {path.stat().st_mtime_ns}\n" for path in sorted(files)).encode()).hexdigest()
 
 
@@ -86,10 +87,8 @@ def library_words(source, library, version, compiler="gcc", speed=SPEED):
             f"-Wl,-Map={source.parent}/link.map", f"-Wl,--version-script={ROOT}/src/runtime/fmi{version}/exports.map", "-o", library]  # fmt: skip
 
 
-def pack_words(folder, library, archive, version):
-    settings = {"FOLDER": folder, "LIBRARIES": library, "FMU": archive, "VERSION": version, "SYSTEM": "system.xml", "SOURCE": ROOT,
-                "NAMES": BUILD / "global_names", "LICENSES": BUILD / "licenses", "ZIP": shutil.which("zip"), "PYTHON": sys.executable}  # fmt: skip
-    return ["cmake", *(word for key, value in settings.items() for word in ("-D", f"{key}={value}")), "-P", ROOT / "scripts" / "package" / "pack.cmake"]
+def pack(folder, library, archive, version):
+    write(archive, fmu_of(folder, version, [library], BUILD / "global_names", BUILD / "licenses"))
 
 
 def run(words):
@@ -115,7 +114,7 @@ def build_system(build, name, versions, words):
         library = library_in(folder, name, version)
         library.parent.mkdir(parents=True, exist_ok=True)
         run(library_words(folder / "system.c", library, version))
-        run(pack_words(folder, library, archive_of(build, name, version), version))
+        pack(folder, library, archive_of(build, name, version), version)
     stamp.write_text(digest)
 
 

@@ -36,13 +36,8 @@ def small_names():
     return [name for name in all_names() if name not in ("HangingCable", "NFourBar", "Rope")]
 
 
-# One system for each kind of runtime: taylor, auto, exact, no solver; tables; constraints, contacts, frictions.
+# One system for each kind of runtime: taylor, auto, exact, no solver; tables; constraints, contacts, frictions. Daily tests of many systems take these alone.
 OF_EACH_KIND = (ROOT / "tests" / "of_each_kind.txt").read_text().split()
-
-
-def one_of_each_kind(names):
-    """Return parameters for tests under sanitizers. Systems outside of OF_EACH_KIND run before a release only."""
-    return [pytest.param(name, marks=() if name in OF_EACH_KIND else pytest.mark.release) for name in names]
 
 
 @functools.cache

@@ -18,7 +18,7 @@ def assemble(folder):
     for part in ("bin", "runtime/scripts/package", "runtime/scripts/requirements"):
         (package / part).mkdir(parents=True)
     files = {"reference.md": ROOT / "fmu" / "README.md", "bin/lagc": LAGC}
-    for name in ("package/cross.py", "package/one_file.py", "requirements/platforms.txt"):
+    for name in ("package/cross.py", "package/one_file.py", "package/pack.py", "requirements/platforms.txt"):
         files[f"runtime/scripts/{name}"] = SCRIPTS / name
     for part in ("include", "src/runtime", "src/ensemble"):
         shutil.copytree(ROOT / part, package / "runtime" / part)

@@ -4,7 +4,6 @@ import functools
 import os
 import platform
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
@@ -17,10 +16,10 @@ from xml.etree import ElementTree
 from . import caching
 from .language import LAGC
 from .live_page.origin import Origin
-from .packing import pack
 from .problem import Problem
-from .runtime.scripts.package.cross import PLATFORM_NAMES, WEBASSEMBLY, Failure, compile_fmu
+from .runtime.scripts.package.cross import PLATFORM_NAMES, Failure, compile_fmu
 from .runtime.scripts.package.one_file import one_file
+from .runtime.scripts.package.pack import fmu_of
 from .variables import suggestion, near_file
 from .whole_files import write_whole
 
@@ -148,9 +147,9 @@ def take_or_compile(key, folder, what, compile_library):
     caching.keep(key, folder)
 
 
-def compile_libraries(folder, name, platforms, fmi, content):
-    """Compile the libraries of all platforms into the folder content/binaries; `folder` contains system.c."""
-    system = folder / "system.c"
+def compile_libraries(folder, name, platforms, fmi):
+    """Compile the libraries of all platforms and return them, each in a folder of its platform's name; `folder` contains system.c."""
+    system, found = folder / "system.c", []
     for platform_name in platforms:
         libraries = folder / "libraries" / platform_name
         key = caching.key_of(runtime_key(), system.read_bytes(), name, platform_name, fmi)
@@ -160,44 +159,8 @@ def compile_libraries(folder, name, platforms, fmi, content):
                 compile_fmu(platform_name, system, libraries, name, fmi, sundials=HERE / "sundials")
 
         take_or_compile(key, libraries, f"{name} cannot be compiled for {platform_name}", compile_library)
-        shutil.copytree(libraries, content / "binaries", dirs_exist_ok=True)
-        if platform_name == WEBASSEMBLY:
-            extra = content / "extra" / "org.modelica.fmi-ls-wasm"
-            extra.mkdir(parents=True)
-            for manifest in ("manifest.xml", "fmi-ls-manifest.xml"):  # as scripts/package/pack.cmake
-                shutil.copy(HERE / "runtime" / "scripts" / "package" / "wasm_component" / "manifest.xml", extra / manifest)
-
-
-def copy_licenses(file, target):
-    """Copy the licenses of the libraries that are linked into the FMU; `file` is license.txt of lagc, which names them."""
-    target.mkdir(parents=True)
-    for names in re.findall(" is linked into it: (.*)", file.read_text(encoding="utf-8")):
-        for name in names.split(", "):
-            shutil.copy(HERE / "licenses" / name, target)
-
-
-def write_descriptions(folder, name, fmi, content):
-    """Move the files that lagc wrote into `folder` to their places in the FMU: descriptions, documentation, icons, licenses, and C sources."""
-    files = {"modelDescription.xml": "modelDescription.xml", "documentation/index.html": "documentation/index.html"}
-    if fmi == 3:
-        files |= {"modelDescription.xml": "fmi3/modelDescription.xml", "terminalsAndIcons/terminalsAndIcons.xml": "fmi3/terminalsAndIcons.xml"}
-        files |= {"terminalsAndIcons/icon.svg": "fmi3/icon.svg", "terminalsAndIcons/icon.png": "model.png"}
-        files |= {f"terminalsAndIcons/{picture.name}": f"fmi3/{picture.name}" for picture in (folder / "fmi3").glob("flange.*")}
-    else:
-        files["model.png"] = "model.png"
-    licenses = Path("documentation/licenses")
-    files[licenses / "license.txt"] = licenses / "license.txt"
-    copy_licenses(folder / licenses / "license.txt", content / licenses)
-    build_description = folder / "fmi3" / "buildDescription.xml"
-    if build_description.exists():  # lagc writes it for FMUs without external libraries, which contain their sources
-        runtime, sources = HERE / "runtime", content / "sources"
-        sources.mkdir(parents=True)
-        (sources / f"{name}.c").write_bytes(one_file(runtime, runtime / "global_names", fmi, folder / "system.c", name).encode())
-        if fmi == 3:
-            files["sources/buildDescription.xml"] = "fmi3/buildDescription.xml"
-    for member, file in files.items():
-        (content / member).parent.mkdir(parents=True, exist_ok=True)
-        (folder / file).rename(content / member)
+        found += [path for path in sorted(libraries.rglob("*")) if path.is_file()]
+    return found
 
 
 def build(
@@ -258,12 +221,8 @@ def build_with(words, system, platforms=None, solver=None, output=".", fmi=2):
         folder = Path(scratch)
         description = derive(system, folder, solver, words)
         name = description.find("CoSimulation").get("modelIdentifier")
-        content = folder / "content"
-        compile_libraries(folder, name, platforms, fmi, content)
-        write_descriptions(folder, name, fmi, content)
-        archive = Path(output) / f"{name}.fmu"
-        pack(content, archive)
-    return archive
+        libraries = compile_libraries(folder, name, platforms, fmi)
+        return write_whole(Path(output) / f"{name}.fmu", fmu_of(folder, fmi, libraries, HERE / "runtime" / "global_names", HERE / "licenses"))
 
 
 def new(name: str, template: str = "pendulum") -> Path:
