@@ -149,6 +149,7 @@ def without_lines(text):
     return re.sub(r"<line\b[^>]*/>", "", text)
 
 
+@pytest.mark.long
 def test_equations_are_those_without_lines(tmp_path):
     """The C of every system is the same with and without lines, except for the identifier of its description. Expressions of lines cost nothing."""
     for name in SYSTEMS:

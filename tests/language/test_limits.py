@@ -66,6 +66,7 @@ def seconds_of_children():
     return usage.ru_utime + usage.ru_stime
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("text, message", REJECTED.values(), ids=REJECTED)
 def test_limits(text, message, tmp_path):
     before = seconds_of_children()

@@ -157,6 +157,7 @@ def bead_at_the_end():
     return along_curve(*cubic, -1, 2, 1.5)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("curve, method", by_turns(CURVES))
 def test_a_constraint_has_pieces(open_fmu, bead_at_the_end, curve, method):
     instance = open_fmu(f"Bead{curve}{method.title()}").initialize()
@@ -325,6 +326,7 @@ PLACED = """
 THIRDS = [0, pytest.param(1, marks=pytest.mark.release), pytest.param(2, marks=pytest.mark.release)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("third", THIRDS)
 @pytest.mark.parametrize("place", PLACES)
 def test_accepted_systems_compile(tmp_path, place, third):

@@ -14,6 +14,8 @@ from scipy.special import ndtri
 
 from fmu import Instance, build_systems
 
+pytestmark = pytest.mark.long
+
 SYSTEMS = {
     "ElastoGap": """<system name="{name}">
   <parameter name="m" start="1" unit="kg" min="0"/><parameter name="c" start="10" unit="N/m"/><parameter name="d" start="1.5" unit="N.s/m"/><parameter name="gap" start="1" unit="m"/>

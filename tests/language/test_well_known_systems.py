@@ -16,6 +16,8 @@ import fmu
 from building import build_systems
 from motions import lagrange_fmu  # noqa: F401
 
+pytestmark = pytest.mark.long
+
 G = 9.81
 # Modelica.Mechanics.Rotational.Examples.CoupledClutches: a sine torque, and three clutches that are pressed one after another.
 CLUTCHES = """<system name="CoupledClutches{}"><parameter name="fn" start="20" unit="N.m"/><parameter name="mu" start="0.5" unit="1"/><parameter name="peak" start="1.1" unit="1"/>

@@ -39,6 +39,7 @@ SMOOTH = {
 TIME_LIMIT = 300  # s; each runs for a few seconds
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", range(COUNT))
 def test_random_system(number, tmp_path):
     """Wrong values, crashes, hangs, and C that does not compile are failures. An error is accepted if it has a message."""
@@ -48,6 +49,7 @@ def test_random_system(number, tmp_path):
     assert outcome.verdict != "wrong", f"{outcome.message}\n{system.xml()}\n{system.plan}"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("number", SWITCHING)
 def test_random_system_that_switches(number, tmp_path):
     """The same for random systems with events, through event mode of FMI 3.0 if the plan says so."""

@@ -7,6 +7,8 @@ from scipy.integrate import solve_ivp
 
 from fmu import build_systems, lagc
 
+pytestmark = pytest.mark.long
+
 METHODS = ["taylor", "auto", "radau", "bdf", "erk"]
 SYSTEMS = {
     "Carried": '<coordinate name="q" velocity="v" start="0.3"/><state name="z" start="0.5" rate="-z + sin(time)"/>'

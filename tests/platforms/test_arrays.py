@@ -41,7 +41,7 @@ def test_the_package_makes_arrays_by_choice(arrays, lagrange_fmu, tmp_path, monk
     building, command = (importlib.import_module(f"lagrange_fmu.{name}") for name in ("building", "command"))
     for file in (BUILD / "global_names", ROOT / "LICENSE"):
         shutil.copy(file, Path(building.__file__).parent / "runtime")
-    monkeypatch.setattr(building, "compile_libraries", lambda folder, name, platforms, fmi, content: None)
+    monkeypatch.setattr(building, "compile_libraries", lambda folder, name, platforms, fmi: [])
     file = tmp_path / "row.xml"
     file.write_text(ROW)
     by_function = building.build(file, fmi=3, output=tmp_path, arrays=arrays)

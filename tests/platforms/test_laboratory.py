@@ -16,6 +16,8 @@ from driven_chromium import PHONE, browser  # noqa: F401
 from scripts.commands.live import LABORATORY
 from scripts.library.live_page.editor import editor_of, files_of
 
+pytestmark = pytest.mark.long
+
 STEPS = 100
 ALL = sorted(path.parent.name for path in (ROOT / "fmu").glob("*/system.xml"))
 

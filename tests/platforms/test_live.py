@@ -20,6 +20,8 @@ from scripts.library.live_page import wasm
 from scripts.library.live_page.page import page_of
 from scripts.library.simulation import settings_of
 
+pytestmark = pytest.mark.long
+
 PULLED = ["SimplePendulum", "DoublePendulum", "FourBar"]  # for others compiling the second module takes minutes
 
 

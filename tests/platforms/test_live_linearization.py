@@ -34,6 +34,7 @@ CASES = {
 }
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", CASES)
 def test_equilibria_and_linearizations(browser, page_of_fmu, lagrange_fmu, name):
     """A, B, C, D and eigenvalues are those of the package at the same point, which is an equilibrium for the package, too."""

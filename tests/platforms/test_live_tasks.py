@@ -7,6 +7,8 @@ import pytest
 
 from driven_chromium import PHONE, browser, opened, page_of_fmu  # noqa: F401
 
+pytestmark = pytest.mark.long
+
 # A driver of the crane: speeds in proportion to the distances that are left, set by the sliders.
 DRIVE = """() => {
   const sliderOf = (name) => document.querySelector(`input[type=range][aria-label=${name}]`), valueOf = (name) => live.history.samples.at(-1)[0][live.names.indexOf(name)];

@@ -16,6 +16,8 @@ import fmu
 from building import runtime
 from fmu import BUILD, ROOT, complaints_about
 
+pytestmark = pytest.mark.long
+
 WITH_SOURCES = fmu.all_names()
 
 

@@ -236,6 +236,7 @@ def test_size(check_size):
     assert '"speed":30.0' in text
 
 
+@pytest.mark.long
 def test_nothing_to_draw(tmp_path):
     words = [sys.executable, ROOT / "scripts" / "commands" / "run.py", fmu.archive("PidController")]
     printed = subprocess.run(words, capture_output=True, text=True, cwd=tmp_path, check=True).stdout

@@ -231,6 +231,7 @@ def test_derivatives_through_friction(lagrange_fmu):
                 assert found.derivatives["x", name][i] == pytest.approx(float(mpmath.diff(along, at[name])), rel=1e-6, abs=1e-8), (t, name)
 
 
+@pytest.mark.long
 def test_fit(lagrange_fmu):
     """For 12 fits to data of known noise, the errors of the values are distributed as their standard deviations state."""
     truth = {"m": 1.7, "k": 61.0, "d": 0.8, "x": 0.25}

@@ -30,6 +30,7 @@ def archive(name):
 AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("integral", [False, True])
 def test_a_value_at_the_end_and_an_integral(lagrange_fmu, integral):  # noqa: F811
     """Derivatives for an oscillation by parameters, a start value and a constant input."""
@@ -42,6 +43,7 @@ def test_a_value_at_the_end_and_an_integral(lagrange_fmu, integral):  # noqa: F8
     assert found.derivatives == pytest.approx(slopes(number, AT), rel=1e-8)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("integral", [False, True])
 def test_of_a_state_that_is_no_output(lagrange_fmu, integral):  # noqa: F811
     expected = slopes(lambda *at: mpmath.quad(lambda t: work(t, *at), [0, 1, 2, 3, 4]) if integral else work(4, *at), AT)

@@ -242,6 +242,7 @@ def test_a_sweep(command, tmp_path):
     np.testing.assert_allclose(runs["theta_end"], expected, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_a_sweep_in_lanes(command, tmp_path):
     """A pendulum released at 90 degrees returns after a period of 4 K(1/2) sqrt(l/g); one of length 0 fails."""
     period = 4 * 1.8540746773013719 / np.sqrt(9.81)
@@ -270,6 +271,7 @@ print(set(lagrange_fmu.__all__) <= set(dir(lagrange_fmu)), lagrange_fmu.build.__
 """
 
 
+@pytest.mark.long
 def test_commands_as_functions(tmp_path):
     """A sweep of a linear pendulum, theta = theta0 cos(sqrt(g/l) t), over a grid and a sample; a page; the reference."""
     folder = package.assemble(tmp_path / "package")
@@ -294,6 +296,7 @@ print(os.getcwd() == before, Path("runs.parquet").exists())
 """
 
 
+@pytest.mark.long
 def test_a_sweep_writes_while_a_thread_loads(tmp_path):
     """FMPy changes the working directory while it loads a library, which here takes longer than the runs of the other thread."""
     folder = package.assemble(tmp_path / "package")

@@ -71,6 +71,7 @@ def test_start_values():
         simulate(archive("SimplePendulum"), {"l": "2kg"})
 
 
+@pytest.mark.long
 def test_commands(command, tmp_path):
     fmu = archive("SimplePendulum")
     ran = command("run", fmu, "theta=30deg", "l=20cm", "--stop-time", "0.1", cwd=tmp_path)

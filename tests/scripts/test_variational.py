@@ -11,6 +11,8 @@ import fmu
 from building import BUILD, archive_of, build_systems
 from motions import BALL, BELT, DOUBLE, DOUBLE_AT, OSCILLATOR, WORKED, belt, bounce, energy_of_double, lagrange_fmu, oscillation, slopes, small_bounces, work  # noqa: F401
 
+pytestmark = pytest.mark.long
+
 AT = {"m": 2.0, "k": 50.0, "d": 1.0, "x": 0.3, "F": 4.0}
 FITTED = ["m", "k", "d", "x"]
 # A damper that is stiff for some time, during which x creeps.

@@ -92,6 +92,7 @@ def test_friction_that_is_nearly_dry(open_fmu):
     assert count(instance, "solverSteps") < 3000
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("tolerance", 10.0 ** -np.linspace(5.5, 12.5, 15))
 def test_flights_belong_to_the_series(open_fmu, tolerance):
     """

@@ -5,6 +5,7 @@ import pytest
 from extreme_cases import CASES, co_simulate, exchange_model
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.name)
 def test_co_simulation(case):
     outcome = co_simulate(case)

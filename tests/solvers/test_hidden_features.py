@@ -147,6 +147,7 @@ def outcomes(instance, end, values=()):
             yield runs[0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", WALLS)
 def test_no_wall_is_passed(name, open_fmu):
     """The particle turns at the wall, and returns to the start after twice the travel time, with the velocity -1."""

@@ -131,6 +131,7 @@ def test_an_angle_jumps_where_it_does(tmp_path):
     assert rows[0] == rows[1]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", ["radau", "taylor"])
 def test_points_in_tables_move_as_in_statements(method, tmp_path):
     runs = []

@@ -11,6 +11,8 @@ from scipy.integrate import solve_ivp
 import fmu
 from fmu import build_systems, lagc
 
+pytestmark = pytest.mark.long
+
 D = 1e-3
 METHODS = ["taylor", "erk", "radau", "bdf", "auto"]
 

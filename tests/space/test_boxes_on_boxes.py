@@ -81,6 +81,7 @@ def distance(apart, rotation, half, other):
     return max((abs(apart @ axis) - abs(axis) @ other - abs(own @ axis) @ half) / size for axis, size in zip(axes, lengths) if size > 0.01)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["BoxOnTable", "TableUnderBox"])
 def test_boxes_touch_where_they_overlap(name):
     """At random poses near the first contact, there is a force if and only if the boxes overlap. Mostly it is that of the overlap."""
@@ -168,6 +169,7 @@ def support(turn, shift):
     return rows + [[*(sign * axis), -half - sign * (axis @ shift)] for axis, half in zip(axes, UPPER[:2]) for sign in (1, -1)]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("turn", [0.0, 0.005, 0.8])
 @pytest.mark.parametrize("heading", [0.5, 1.6])
 def test_a_box_that_sticks_out_tips(turn, heading):
@@ -205,6 +207,7 @@ def test_area_of_support():
     assert height == pytest.approx(UPPER[2] - MASS * G / (count * STIFFNESS), abs=2e-6)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("mu, lifts", [(0.8, True), (0.11, True), (0.09, False)])
 def test_fingers_lift_a_cube(mu, lifts):
     """Fingers that are boxes hold a cube by friction if 2 mu 10 N exceed its weight of 1.96 N: from mu = 0.098 on. The creep lets it slip by 0.4 mm."""

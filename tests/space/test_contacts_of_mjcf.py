@@ -8,6 +8,8 @@ import pytest
 from building import build_systems
 from fmu import lagc
 
+pytestmark = pytest.mark.long
+
 ANGLE, DURATION, G = 0.3, 2.0, 9.81
 BOX = '<body name="{0}" pos="0 {1} 0.1"><freejoint/><geom name="g{0}" type="box" size="0.2 0.2 0.1" {2}/></body>'
 # Attributes of a box, elements beside it, and its coefficient of sliding friction; None if it falls.

@@ -89,6 +89,7 @@ def rolling(_, state):
     return np.r_[turn.apply(v), rotation_rate, spin_rate]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("spin", [5.0, -5.0])
 def test_rattleback(spin):
     """Spun in one direction it starts to rattle and reverses; in the other it continues. It rolls without slip or dissipation."""

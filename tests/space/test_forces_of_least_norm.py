@@ -8,6 +8,8 @@ import pytest
 
 from building import build_systems
 
+pytestmark = pytest.mark.long
+
 MASS, SIZES, CENTRE, PUSH = 2.0, np.array([0.8, 0.6, 0.2]), np.array([0.1, -0.05, 0.0]), np.array([-30.0, 1.0, 0.0])
 HALF = np.sqrt(0.5)
 # Quaternion of the frame at the start, and the position of its origin from the middle of the box, in m along its axes.

@@ -13,6 +13,8 @@ from scipy.spatial.transform import Rotation
 from building import build_systems
 from fmu import archive, lagc
 
+pytestmark = pytest.mark.long
+
 TYPES = {
     "spherical": "x y z",
     "universal": "x y z aboutZ",

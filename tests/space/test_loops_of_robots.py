@@ -13,6 +13,8 @@ from fmpy.fmi2 import FMU2Model
 import fmu
 from fmu import build_systems
 
+pytestmark = pytest.mark.long
+
 INERTIA = '<inertia ixx="{0}" iyy="{1}" izz="{2}" ixy="0" ixz="0" iyz="0"/>'
 ROD_INERTIA = INERTIA.format(2e-3, 2e-3, 1e-9)
 

@@ -10,6 +10,8 @@ from scipy.optimize import brentq
 import fmu
 from building import build_systems
 
+pytestmark = pytest.mark.long
+
 K, C = 1e5, 0.5  # N/m, s/m
 AWAY, FAST = 10.0, 20.0  # m, m/s
 

@@ -9,6 +9,8 @@ from scipy.spatial.transform import Rotation
 import fmu
 from building import build_systems
 
+pytestmark = pytest.mark.long
+
 HEAD = '<parameter name="m" start="2" unit="kg"/><parameter name="mu" start="0.3" unit="1"/><parameter name="e" start="0" unit="1"/><gravity z="-9.81"/>'
 
 

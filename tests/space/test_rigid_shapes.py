@@ -12,6 +12,8 @@ from scipy.spatial.transform import Rotation
 import fmu
 from building import LAGC, build_systems
 
+pytestmark = pytest.mark.long
+
 G = 9.81
 HEAD = """<parameter name="m" start="2" unit="kg"/><parameter name="r" start="0.1" unit="m"/><parameter name="mu" start="0.3" unit="1"/>
   <parameter name="stick" start="1" unit="1"/><parameter name="e" start="0" unit="1"/><parameter name="slope" start="0" unit="rad"/>"""

@@ -12,6 +12,8 @@ import fmu
 from building import build_systems
 from fmu import lagc
 
+pytestmark = pytest.mark.long
+
 LEGS = {"lf": (0.2, 0.1), "rf": (0.2, -0.1), "lh": (-0.2, 0.1), "rh": (-0.2, -0.1)}
 INERTIA = '<inertia ixx="{0}" iyy="{0}" izz="{0}" ixy="0" ixz="0" iyz="0"/>'
 

@@ -12,6 +12,8 @@ from scipy.spatial.transform import Rotation
 import fmu
 from building import LAGC, build_systems
 
+pytestmark = pytest.mark.long
+
 G, MASS, RADIUS, LENGTH = 9.81, 2.0, 0.1, 0.06
 ACROSS, ALONG = MASS * (3 * RADIUS**2 + LENGTH**2) / 12, MASS * RADIUS**2 / 2  # moments of inertia
 SOFT = 'stiffness="1e4" damping="0.5" friction="0.8"'

@@ -14,6 +14,8 @@ import fmu
 from building import LAGC, build_systems
 from fmu import DISCARD, ERROR
 
+pytestmark = pytest.mark.long
+
 HEAD = """<constant name="g" value="9.81" unit="m/s2"/><parameter name="m" start="2" unit="kg"/><parameter name="r" start="0.1" unit="m"/>
   <parameter name="k" start="1e5" unit="N/m"/><parameter name="c" start="0" unit="s/m"/><parameter name="mu" start="0" unit="1"/>"""
 

@@ -14,6 +14,8 @@ from scipy.spatial.transform import Rotation
 import fmu
 from building import build_systems
 
+pytestmark = pytest.mark.long
+
 M, G, SLOPE = 2.0, 9.81, 0.3
 HEAD = f"""<parameter name="mu" start="0.3" unit="1"/><gravity x="{G}*sin({SLOPE})" z="-{G}*cos({SLOPE})"/><shape name="floor" type="plane"/>"""
 FREE = (

@@ -10,6 +10,8 @@ from scipy.optimize import linprog
 import fmu
 from building import build_systems
 
+pytestmark = pytest.mark.long
+
 G = 9.81
 HEAD = '<parameter name="mu" start="1" unit="1"/><gravity z="-9.81"/><shape name="floor" type="plane"/>'
 

@@ -12,6 +12,8 @@ import fmu
 from fmu import build_systems
 from numerics.space.accelerations import chain
 
+pytestmark = pytest.mark.long
+
 LINKS = 10  # of the pendulum
 
 

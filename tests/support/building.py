@@ -11,13 +11,15 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
-from scripts.package.pack import fmu_of, write
-
 ROOT = Path(__file__).resolve().parent.parent.parent
+sys.path.append(str(ROOT))  # for programs that run elsewhere
+from scripts.package.pack import fmu_of, write  # noqa: E402
+
 BUILD = Path(os.environ.get("FMU_BUILD", ROOT / "build"))
 LAGC = ROOT / "build" / "bin" / "lagc"
 PLATFORMS = {2: "linux64", 3: "x86_64-linux"}

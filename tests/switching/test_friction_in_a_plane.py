@@ -13,6 +13,8 @@ from fmu import DISCARD, ERROR, build_systems
 from test_impacts import impacts_by_trial
 from test_switching import to, value
 
+pytestmark = pytest.mark.long
+
 G = 9.81
 METHODS = ["taylor", "radau", "bdf", "erk", "auto"]
 

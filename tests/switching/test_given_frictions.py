@@ -9,6 +9,8 @@ import pytest
 import fmu
 from fmu import build_systems
 
+pytestmark = pytest.mark.long
+
 DRIVE = '<coordinate name="x" velocity="v" acceleration="{0}"/><particle mass="1" x="x"/>'
 START = DRIVE.format("if(time &lt; 1, 0, 1)")
 FRICTION = '<friction name="rub" {0} force="5"/>'

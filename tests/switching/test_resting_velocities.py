@@ -10,6 +10,8 @@ import fmu
 from ensemble_runs import ensemble
 from fmu import build_systems
 
+pytestmark = pytest.mark.long
+
 METHODS = ["taylor", "erk", "bdf", "radau", "auto"]
 ANGLES = [0.1, 0.3, 0.5, 0.6, 0.7, math.pi / 4, 0.9, 1.0, 1.1, 1.2, 1.3, 1.5]
 RATIOS = [0.3, 0.7, 1.5, 2**0.5, 2, 3, 5, 7]

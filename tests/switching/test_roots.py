@@ -163,6 +163,7 @@ def test_a_root_ends(method, step, name, state, exact):
 
 @EVERY
 @STEPS
+@pytest.mark.long
 def test_a_tide_falls_below_the_end_of_a_root_and_rises_again(method, step):
     time, h = motion("Tide", method, step, 10.0, "h")
     np.testing.assert_allclose(h, tide(time), rtol=0, atol=3e-7)
@@ -195,6 +196,7 @@ EXCHANGES = pytest.mark.parametrize("step, tolerance", [(0.5, 1e-5), (0.5, 1e-8)
 
 
 @EXCHANGES
+@pytest.mark.long
 def test_model_exchange_passes_ends_of_roots(step, tolerance):
     time, h, flow = exchanged("Tank", step, tolerance, "h", "flow")
     np.testing.assert_allclose(h, drained(time), rtol=0, atol=10 * tolerance)

@@ -11,6 +11,8 @@ from fmpy.fmi2 import FMU2Model
 
 from fmu import DISCARD, Instance, build_systems
 
+pytestmark = pytest.mark.long
+
 SPRING = """<system name="{name}"><coordinate name="h" velocity="v" start="0.5"/><particle mass="1" x="h"/><potential>9*h^2/2</potential>
   <stop coordinate="h" min="0" max="2"/><solver method="{method}"/></system>"""
 TINY = """<system name="{name}"><coordinate name="h" velocity="v" start="1e-9" velocityStart="0.001"/><particle mass="1" y="h"/><gravity y="-9.81"/>

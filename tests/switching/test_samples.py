@@ -110,6 +110,7 @@ def built():
     fmu.build_systems("samples", {"Rates": RATES, "Kicked": KICKED, **servos, **digits, **paced, **decays}, versions=[2, 3])
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("step", [2.0, 0.13, 0.01])
 def test_a_period_that_is_a_mode(method, step):

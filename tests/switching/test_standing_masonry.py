@@ -12,6 +12,8 @@ from scipy.optimize import linprog
 import fmu
 from building import build_systems
 
+pytestmark = pytest.mark.long
+
 G, TINY = 9.81, 1e-3  # TINY: the radius of the balls that are corners
 CONTACT = '<contact name="{}" between="{}" and="{}" friction="mu"/>'
 

@@ -9,6 +9,8 @@ import fmu
 from ensemble_runs import ensemble
 from fmu import build_systems, lagc
 
+pytestmark = pytest.mark.long
+
 METHODS = ["taylor", "erk", "bdf", "radau", "auto"]
 RATIOS = {"2": 2, "3": 3, "4": 4, "5": 5, "7": 7, "0.7": 0.7, "1.5": 1.5, "sqrt(2)": 2**0.5}
 GEAR = """<system name="{name}">
