@@ -8,6 +8,7 @@
 #include "detection/indicators.h"
 #include "nonsmooth/resolve.h"
 #include "nonsmooth/resolution.h"
+#include "instance/active_constraints.h"
 #include "instance/projection.h"
 
 /* Steps of Newton's method to a zero. */
@@ -86,6 +87,36 @@ static void find_shifts(struct Instance *instance, const double *value, double *
     shift[i] = known && !indicator_is_force(instance, i) ? shift_of(shift[i], rounding[i]) : largest_shift;
 }
 
+/* Gaps below this, in m or rad, may be errors of an importer's integrator. */
+static const double least_gap = 1e-6;
+
+/* In s: a gap that parts is reported with the way at its rate in this time. */
+static const double parting_time = 1.0;
+
+/* True if a contact is open, and its gap may be an error. */
+static bool may_part(const struct Instance *instance, const double *indicator, size_t contact) {
+  return !contact_holds(instance, contact) && indicator[contact_indicator(lagrangian.switches, contact)] < least_gap;
+}
+
+/*
+ * Adds to small gaps that part, with a growing rate, the way at their rate. A contact that its force has opened parts
+ * with the third power of the time: errors of an importer's integrator would close it again and again. values:
+ * workspace.
+ */
+static void let_part(struct Instance *instance, const struct Point *point, double *indicator, double *values) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool any_parts = false;
+  for (size_t i = 0; i < switches->contact_count; i++) any_parts |= may_part(instance, indicator, i);
+  if (!any_parts || lagrangian.constraints.accelerations(point, instance->acceleration) != 0) return;
+  switches->switching_values(point, instance->acceleration, values);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    const double *value = values + contact_slot(switches, i, 0);
+    bool parts = value[CONTACT_RATE] > 0.0 && value[CONTACT_ACCELERATION] > 0.0;
+    if (may_part(instance, indicator, i) && parts)
+      indicator[contact_indicator(switches, i)] += parting_time * value[CONTACT_RATE];
+  }
+}
+
 /*
  * A reported indicator keeps its sign until it is a little beyond 0, so that it is not 0 after an event (FMI 2.0,
  * section 3.2.2; FMI 3.0, section 3.2.1). The indicator of a branch at rest at 0 changes its sign when it leaves 0 to
@@ -99,6 +130,7 @@ bool exchange_indicators(struct Instance *instance, double *value) {
   double *shift = instance->switching_work + count; /* values may be stored before it */
   complete_indicators(instance, value);
   find_shifts(instance, value, shift);
+  let_part(instance, &point, value, shift + 2 * count + lagrangian.state_count);
   for (size_t i = 0; i < count; i++) {
     double sign = indicator_sign(instance, i);
     value[i] = sign == 0.0 ? shift[i] - fabs(value[i]) : value[i] + sign * shift[i];

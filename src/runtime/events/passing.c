@@ -351,11 +351,43 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   return pass_event(instance, step, time, indicator, progress);
 }
 
+/* In communication steps: the time after which constraints that begin to contradict each other do so clearly. */
+static const double moment_share = 1e-4;
+
+/*
+ * Finds the modes a moment after a time where constraints of frictions begin to contradict others. An example is a part
+ * that they hold at rest, and that begins to be driven without a jump. True if modes change; the solver then starts
+ * anew.
+ */
+static bool pass_contradiction(struct Instance *instance, const struct CommunicationStep *step, double begin,
+                               struct EventProgress *progress) {
+  double time = begin + moment_share * (step->end - step->start);
+  double *state = instance->event_state, *rate = state + lagrangian.state_count;
+  bool changed = false;
+  if (!(time < step->end) || !lagrangian.solver->interpolate(instance, begin, state)) return false;
+  if (!solver_derivatives(instance, begin, state, rate)) return false;
+  for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += (time - begin) * rate[i];
+  if (resolve(instance, time, state, AT_CHANGE, 0, &changed) != NULL || !changed) return false;
+  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, time) != NULL) return false;
+  progress->searched = time;
+  return true;
+}
+
+/* Passes a contradiction that begins with the last step, which is then made again, or behind it. False if none does. */
+static bool pass_contradictions(struct Instance *instance, const struct CommunicationStep *step,
+                                struct EventProgress *progress) {
+  const struct Span last = instance->fmu_state->last_step;
+  if (lagrangian.switches->friction_laws == NULL || instance->violated_constraint == 0) return false;
+  return pass_contradiction(instance, step, last.start, progress) ||
+         pass_contradiction(instance, step, last.end, progress);
+}
+
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                 struct EventProgress *progress) {
   double time;
   size_t indicator;
   if (is_endless(++progress->close_events)) return problem;
+  if (pass_contradictions(instance, step, progress)) return NULL;
   if (!search_for_jump(instance, &time, instance->event_state, &indicator)) return problem;
   if (time > step->end) time = step->end;
   progress->searched = time;

@@ -20,6 +20,16 @@ enum { CORNER_LIMIT = 30 };
 const char constraints_not_kept[] = "the constraints cannot be fulfilled after an event";
 const char touched_corner[] = "both sides of the corner of a gap touch";
 
+/* Lets frictions slide to which an importer's step has given a velocity against their constraints. */
+static bool release_moved(struct Resolution *resolution) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  if (resolution->occasion != IN_EXCHANGE || laws == NULL) return false;
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  resolution_values_of_force(resolution, &point, lagrangian.constraints.count, 0.0, resolution->value);
+  laws->release(resolution);
+  return evaluate_prepare(resolution->instance) == STATUS_DONE;
+}
+
 const char *continuity_begin(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0;
@@ -27,6 +37,8 @@ const char *continuity_begin(struct Resolution *resolution) {
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return constraints_not_kept;
   const struct Projection *laws = lagrangian.constraints.projection;
   double moved = laws->project(resolution->instance, resolution->time, resolution->state);
+  if (!isfinite(moved) && release_moved(resolution))
+    moved = laws->project(resolution->instance, resolution->time, resolution->state);
   if (isfinite(moved)) return NULL;
   log_violated(resolution->instance, resolution->occasion == IN_EXCHANGE ? STATUS_ERROR : STATUS_DISCARD,
                resolution->time, laws->violated_constraint(resolution->instance, resolution->time));

@@ -30,7 +30,8 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   ARENA_NUMBERS(&arena, switches->branch_count, &resolution->rate, &resolution->absent);
   ARENA_NUMBERS(&arena, switches->contact_count, &resolution->was_opened, &resolution->struck);
   ARENA_NUMBERS(&arena, values, &resolution->value, &resolution->error_bound, &resolution->other_error_bound);
-  ARENA_NUMBERS(&arena, switches->friction_count, &resolution->force_error_bound, &resolution->began);
+  ARENA_NUMBERS(&arena, switches->friction_count, &resolution->force_error_bound, &resolution->began,
+                &resolution->first_rate);
   ARENA_NUMBERS(&arena, switches->event_count, &resolution->condition, &resolution->happened);
   ARENA_NUMBERS(&arena, modes, &resolution->first_mode, &resolution->takes_part);
   ARENA_NUMBERS(&arena, switches->resting_count, &resolution->moves);
@@ -171,6 +172,7 @@ bool resolution_evaluate(struct Resolution *resolution) {
     size_t velocity = friction_slot(resolution->switches, i, FRICTION_VELOCITY), rate = velocity + FRICTION_RATE;
     measure_velocity(resolution, velocity);
     resolution->largest[rate] = fmax(resolution->largest[rate], fabs(resolution->value[rate]));
+    if (is_first) resolution->first_rate[i] = fabs(resolution->value[rate]);
   }
   return true;
 }

@@ -17,7 +17,7 @@ struct Resolution {
   double *value, *error_bound; /* value[] of the switch table, and its rounding error bounds */
   double *other_error_bound;   /* rounding error bounds by the second pattern, at the start of the event */
   double *force_error_bound;   /* rounding error bound of the force of each friction's constraint */
-  double *began;               /* mode of each friction at the start of the event */
+  double *began, *first_rate;  /* mode of each friction, and size of the rate of its velocity, before the event */
   double *largest;             /* of velocities and rates in value[] since the start of the event */
   double *condition;           /* value of each condition before the last change */
   double *happened;            /* 1 for each event that happened in this round, else 0 */

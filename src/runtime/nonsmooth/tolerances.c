@@ -12,5 +12,6 @@ struct Tolerances tolerances_of(const struct Resolution *resolution) {
                              .drift = (is_exchange ? 1e-3 : 1e-6) * length,
                              .rounded = 1e-4 * length,
                              .rest = (is_exchange ? 1e-6 : 1e-9) * velocity,
+                             .acceleration = 1e-9 * velocity,
                              .kink = continuity_allowed_share(resolution) * velocity};
 }

@@ -119,10 +119,18 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
   return NULL;
 }
 
+/* Passes what the solver cannot reach, or finds why not. Returns NULL, or the reason for a failure. */
+static const char *pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *barrier,
+                                struct StepProgress *course) {
+  const struct EventLaws *laws = lagrangian.event_laws;
+  const char *problem = laws != NULL ? laws->pass_barrier(instance, step, barrier, &course->progress) : barrier;
+  course->ends_at_event = problem != barrier;
+  return problem;
+}
+
 /* Makes one solver step, or passes a zero that the solver cannot reach. Returns NULL, or the reason for a failure. */
 static const char *advance_once(struct Instance *instance, struct CommunicationStep *step,
                                 struct StepProgress *course) {
-  const struct EventLaws *laws = lagrangian.event_laws;
   const struct Span *last = &instance->fmu_state->last_step;
   const char *problem = check_cost(instance, step, course);
   if (problem != NULL) return problem;
@@ -130,9 +138,8 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   near.step_limit = course->progress.step_limit;
   if (near.step_limit > 0.0) near.end = fmin(step->end, last->end + near.step_limit);
   problem = lagrangian.solver->advance(instance, &near);
-  const char *barrier = problem;
-  if (barrier != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, barrier, &course->progress);
-  course->ends_at_event = problem != barrier;
+  if (problem != NULL) problem = pass_barrier(instance, step, problem, course);
+  else course->ends_at_event = false;
   if (problem != NULL) return problem;
   step->count++;
   course->resting = solver_step_vanishes(last->start, last->end - last->start) ? course->resting + 1 : 0;
@@ -150,9 +157,15 @@ static void notify_observer(struct Instance *instance, struct CommunicationStep 
   if (instance->observe != NULL && is_inside) instance->observe(instance, step, time);
 }
 
+/* Takes the state at the end, and moves it onto the constraints. Returns NULL, or the reason for a failure. */
+static const char *take_end(struct Instance *instance, const struct CommunicationStep *step) {
+  if (!solver_take_state(instance, step->end)) return "the motion grows without bound";
+  return solver_project(instance, step->end, instance->state);
+}
+
 /*
- * Makes steps until one reaches the end. Returns NULL, or the reason for a failure. *reached: the time up to which the
- * motion is known; it is not known beyond an event that cannot be resolved.
+ * Makes steps until one reaches the end, whose state is then in instance->state. Returns NULL, or the reason for a
+ * failure. *reached: the time up to which the motion is known; it is not known beyond an event that cannot be resolved.
  */
 static const char *make_steps(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
                               double *reached) {
@@ -165,10 +178,13 @@ static const char *make_steps(struct Instance *instance, struct CommunicationSte
     *reached = course.progress.is_lost ? course.progress.searched : instance->fmu_state->last_step.end;
     if (problem != NULL) return problem;
     notify_observer(instance, step);
-    if (*reached >= step->end) return NULL;
-    problem = advance_once(instance, step, &course);
+    bool is_end = *reached >= step->end;
+    problem = is_end ? take_end(instance, step) : advance_once(instance, step, &course);
+    if (is_end && problem == NULL) return NULL;
+    if (is_end) problem = pass_barrier(instance, step, problem, &course);
     *ends_at_event = problem != NULL && course.ends_at_event;
-    *reached = instance->fmu_state->last_step.end;
+    /* At the end: no state there is valid, but that at the start of the last step. */
+    *reached = is_end ? instance->fmu_state->last_step.start : instance->fmu_state->last_step.end;
     if (problem != NULL) return problem;
   }
 }
@@ -235,19 +251,16 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
   bool ends_at_event = false;
   const char *law = NULL; /* the law violated at the end */
   const char *problem = make_steps(instance, step, &ends_at_event, reached);
-  if (problem == NULL && solver_take_state(instance, step->end)) {
-    problem = solver_project(instance, step->end, instance->state);
-    if (problem == NULL && lagrangian.event_laws != NULL) law = lagrangian.event_laws->check(instance, step->end);
-    if (problem == NULL && law == NULL) {
-      *reached = step->end; /* an observer may have shortened the step */
-      return STEP_DONE;
-    }
+  if (problem == NULL && lagrangian.event_laws != NULL) law = lagrangian.event_laws->check(instance, step->end);
+  if (problem == NULL && law == NULL) {
+    *reached = step->end; /* an observer may have shortened the step */
+    return STEP_DONE;
   }
-  if (problem == NULL) *reached = last->start; /* no valid state at the end: the start of the last step has one */
+  if (problem == NULL) *reached = last->start;
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* states up to the start were reported already */
   if (law != NULL) return stop(instance, step, law, true, *reached);
-  return stop(instance, step, problem != NULL ? problem : "the motion grows without bound", ends_at_event, *reached);
+  return stop(instance, step, problem, ends_at_event, *reached);
 }
 
 /* The arguments and the result of do_advance(), the task of Solver.run(). */

@@ -75,7 +75,7 @@ static bool sticks_on(const struct Resolution *resolution, size_t contact) {
 static double error_bound_of_acceleration(const struct Resolution *resolution, size_t contact) {
   bool parts = resolution->was_opened[contact] != 0.0;
   double error_bound = resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
-  return (parts ? parting_in_error_bound : 1.0) * error_bound;
+  return parts ? fmax(parting_in_error_bound * error_bound, tolerances_of(resolution).acceleration) : error_bound;
 }
 
 /* True if a contact that its force has opened in this event accelerates towards closing. */

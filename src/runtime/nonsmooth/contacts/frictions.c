@@ -94,8 +94,8 @@ static struct FrictionState friction_state(const struct Resolution *resolution, 
   bool may_stay = resolution->switches->rests_on != NULL || !resolution->switches->friction_varies;
   state.has_no_force = may_stay && value[FRICTION_STICTION] == 0.0 && value[FRICTION_FORCE] == 0.0 &&
                        value[FRICTION_STICTION_BACK] == 0.0 && value[FRICTION_FORCE_BACK] == 0.0;
-  /* Rounding of the time, at the largest rate of this velocity. */
-  double error_bound_in_time = 8.0 * DBL_EPSILON * fabs(resolution->time * resolution->largest[slot + FRICTION_RATE]);
+  /* Rounding of the time, at the rate of this velocity before the event. */
+  double error_bound_in_time = 8.0 * DBL_EPSILON * fabs(resolution->time * resolution->first_rate[friction]);
   /* After the velocity has reached 0, a remainder counts as a rounding error, until velocities jump. */
   bool is_at_zero = !state.is_first || state.is_hit;
   double rounding = state.error_bound + error_bound_in_time;
@@ -122,23 +122,25 @@ static double mode_without_force(const struct FrictionState *state) {
 }
 
 /*
- * Returns the mode of a friction that passes through 0 because it cannot stop the motion. An example is a slider at
- * the dead centre of its crank. Its rate is the same while it sticks, and its constraint force is a rounding error.
- * 0 for others.
+ * Returns the mode of a friction whose constraint does not hold its velocity; 0 for others. It may contradict others, as
+ * that of a brake against a clutch that begins to turn. The rate then is that with which the others move it. Or it passes
+ * through 0 because it cannot stop the motion, as at the dead centre of a crank. The rate then is the same while it
+ * sticks, and the constraint force is a rounding error.
  */
-static double mode_without_hold(const struct FrictionState *state) {
+static double mode_without_hold(const struct Resolution *resolution, const struct FrictionState *state) {
   bool continues = fabs(state->rate) > sticking_rate_share * state->largest_rate,
        is_determined = fabs(state->rate) > state->error_bound_of_rate;
   bool is_rounding = fabs(state->force) <= least_certainty * state->error_bound_of_force;
+  bool has_slid = !state->is_first && state->began != 0.0;
   double most = continues ? state->error_bound_of_force : state->force;
-  if (state->is_first || state->began == 0.0) return 0.0;
-  if (continues && is_determined) return state->rate > 0.0 ? 1.0 : -1.0;
-  return state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
+  if (continues && is_determined && (has_slid || fabs(state->rate) > tolerances_of(resolution).acceleration))
+    return state->rate > 0.0 ? 1.0 : -1.0;
+  return has_slid && state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
 }
 
 /* Returns the mode of a friction that sticks: 0, or the direction in which it begins to slide. */
 static double mode_from_rest(const struct Resolution *resolution, const struct FrictionState *state) {
-  double passing = mode_without_hold(state);
+  double passing = mode_without_hold(resolution, state);
   if (passing != 0.0) return passing;
   /* At the limit a friction sticks; an importer stops beyond it. After coming to rest there rounding may exceed it. */
   double limit = state->stiction + (state->is_hit && !state->is_first ? state->error_bound_of_force : 0.0);

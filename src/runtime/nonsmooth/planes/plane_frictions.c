@@ -114,7 +114,7 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
     if (state.mode == PLANE_IS_FREE || !state.has_force) *again |= change_force(resolution, &state);
     else if (state.is_given) *again |= follow_given(resolution, &state);
     else if (plane_is_stopping(resolution, &state) || plane_is_overcome(resolution, &state) ||
-             slips_otherwise(resolution, &state))
+             slips_otherwise(resolution, &state) || plane_is_unheld(resolution, &state))
       resolves = true;
     else *again |= change_slide(resolution, &state);
   }

@@ -14,6 +14,7 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/frictions.h"
 #include "nonsmooth/planes/rest_forces.h"
+#include "nonsmooth/tolerances.h"
 
 /* In units of its stiction: a friction that needs more cannot stop the motion. */
 static const double hopeless = 1e6;
@@ -113,15 +114,25 @@ static bool bring_to_rest(struct Resolution *resolution) {
   return is_done && (!is_projected || let_stopped_slip(resolution));
 }
 
-/* True if the velocity of a friction that slid changes although it sticks. */
-static bool continues(const struct Resolution *resolution, const struct PlaneState *state) {
-  double largest = 0.0;
+/* True if the rate of the velocity is above `least`, and no small share of the largest one in the event. */
+static bool has_rate(const struct Resolution *resolution, const struct PlaneState *state, double least) {
   for (size_t i = 0; i < 2; i++) {
     size_t slot = friction_slot(resolution->switches, state->metadata->along + i, FRICTION_RATE);
-    largest = fmax(largest, resolution->largest[slot]);
+    least = fmax(least, sticking_rate_share * resolution->largest[slot]);
   }
-  bool is_slow = *part_of_plane(resolution, state) == IS_SLOW;
-  return is_slow && hypot(state->rate[0], state->rate[1]) > sticking_rate_share * largest;
+  return hypot(state->rate[0], state->rate[1]) > least;
+}
+
+bool plane_is_unheld(const struct Resolution *resolution, const struct PlaneState *state) {
+  size_t slot = friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE);
+  double bound = fmax(resolution->error_bound[slot], resolution->error_bound[slot + FRICTION_VALUES]);
+  return state->mode == PLANE_STICKS &&
+         has_rate(resolution, state, fmax(bound, tolerances_of(resolution).acceleration));
+}
+
+/* True if the velocity of a friction that slid changes although it sticks. */
+static bool continues(const struct Resolution *resolution, const struct PlaneState *state) {
+  return *part_of_plane(resolution, state) == IS_SLOW && has_rate(resolution, state, 0.0);
 }
 
 /* True if no friction that sticks needs more than its stiction. */
@@ -133,7 +144,7 @@ static bool all_stick(const struct Resolution *resolution) {
     double part = *part_of_plane(resolution, &state);
     if (part == 0.0 || state.mode != PLANE_STICKS) continue;
     double limit = state.stiction + (part == IS_OVERCOME ? -rounding : rounding);
-    all = state.needed <= limit && !continues(resolution, &state);
+    all = state.needed <= limit && !continues(resolution, &state) && !plane_is_unheld(resolution, &state);
   }
   return all;
 }

@@ -6,6 +6,9 @@
 /* True if a sliding friction has to be tried to stick. */
 bool plane_is_stopping(const struct Resolution *resolution, const struct PlaneState *state);
 
+/* True if a friction sticks, and its velocity changes nevertheless: its constraint contradicts others. */
+bool plane_is_unheld(const struct Resolution *resolution, const struct PlaneState *state);
+
 /* True if a sticking friction needs more than its stiction, or was found to reach it. */
 bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneState *state);
 
