@@ -102,7 +102,7 @@ def test_foreign_project(tmp_path):
     [
         ("lagrange_add_fmu(Mine missing.xml)", "lagrange_add_fmu(Mine): there is no .*/missing.xml; expected the file of a system"),
         ("lagrange_add_fmu(Mine system.xml PLATFORMS vax)", "the platform 'vax' is not known; expected linux64, win64, darwin64, aarch64-linux, wasm32"),
-        ("lagrange_add_fmu(Mine system.xml PLATTFORMS win64)", "unknown words 'PLATTFORMS;win64'; expected PLATFORMS, FMI_VERSIONS, SOLVER, FORM or ARRAYS"),
+        ("lagrange_add_fmu(Mine system.xml PLATTFORMS win64)", "unknown words 'PLATTFORMS;win64'; expected PLATFORMS, FMI_VERSIONS, SOLVER, FORM, ARRAYS or ROBOT"),
         ("lagrange_add_fmu(Mine system.xml FMI_VERSIONS 1)", "lagrange_add_fmu(Mine): there is no version 1 of FMI here; expected 2, 3 or both"),
     ],
 )

@@ -34,7 +34,7 @@ def test_any_linux_can_install_it():
     shown = subprocess.run([sys.executable, "-m", "auditwheel", "show", archive], capture_output=True, text=True).stdout
     assert re.search(r'consistent\s+with\s+the\s+following\s+platform\s+tag:\s+"manylinux_2_(5|12|17)_x86_64"', shown), shown
     with zipfile.ZipFile(archive) as file:
-        assert sum(member.file_size for member in file.infolist()) < 14e6  # SUNDIALS has 6.7e6, lagc and the laboratory 1.6e6 each, three.js 0.9e6
+        assert sum(member.file_size for member in file.infolist()) < 15e6  # SUNDIALS has 6.7e6, lagc and the laboratory 1.8e6 and 1.7e6, three.js 0.9e6
         assert str(ROOT).encode() not in b"".join(file.read(member) for member in file.namelist())
         assert "lagrange_fmu/licenses/libxml2.txt" in file.namelist()
 
