@@ -1,5 +1,7 @@
 #include "nonsmooth/tolerances.h"
 
+#include <math.h>
+
 #include "evaluation/evaluate.h"
 #include "nonsmooth/continuity.h"
 
@@ -14,4 +16,9 @@ struct Tolerances tolerances_of(const struct Resolution *resolution) {
                              .rest = (is_exchange ? 1e-6 : 1e-9) * velocity,
                              .acceleration = 1e-9 * velocity,
                              .kink = continuity_allowed_share(resolution) * velocity};
+}
+
+double rounded_acceleration_of_gap(const struct Resolution *resolution, size_t contact) {
+  double bound = resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
+  return fmax(1e3 * bound, tolerances_of(resolution).acceleration);
 }

@@ -19,3 +19,9 @@ struct Tolerances {
 
 /* Returns the tolerances at the present state and accelerations. */
 struct Tolerances tolerances_of(const struct Resolution *resolution);
+
+/*
+ * Returns the acceleration of a gap up to which it counts as 0, where a constraint fulfils it or a force has just
+ * vanished. It is 1000 rounding error bounds, since several errors add up, and at least Tolerances.acceleration.
+ */
+double rounded_acceleration_of_gap(const struct Resolution *resolution, size_t contact);

@@ -119,11 +119,12 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
   return NULL;
 }
 
-/* Passes what the solver cannot reach, or finds why not. Returns NULL, or the reason for a failure. */
+/* Passes a barrier, if there is one, that the solver cannot reach. Returns NULL, or the reason for a failure. */
 static const char *pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *barrier,
                                 struct StepProgress *course) {
   const struct EventLaws *laws = lagrangian.event_laws;
-  const char *problem = laws != NULL ? laws->pass_barrier(instance, step, barrier, &course->progress) : barrier;
+  const char *problem = barrier;
+  if (barrier != NULL && laws != NULL) problem = laws->pass_barrier(instance, step, barrier, &course->progress);
   course->ends_at_event = problem != barrier;
   return problem;
 }
@@ -137,9 +138,7 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
   struct CommunicationStep near = *step; /* ends sooner if long steps cannot separate the events */
   near.step_limit = course->progress.step_limit;
   if (near.step_limit > 0.0) near.end = fmin(step->end, last->end + near.step_limit);
-  problem = lagrangian.solver->advance(instance, &near);
-  if (problem != NULL) problem = pass_barrier(instance, step, problem, course);
-  else course->ends_at_event = false;
+  problem = pass_barrier(instance, step, lagrangian.solver->advance(instance, &near), course);
   if (problem != NULL) return problem;
   step->count++;
   course->resting = solver_step_vanishes(last->start, last->end - last->start) ? course->resting + 1 : 0;
@@ -249,18 +248,17 @@ static enum StepResult advance_to_end(struct Instance *instance, struct Communic
     return readiness;
   }
   bool ends_at_event = false;
-  const char *law = NULL; /* the law violated at the end */
   const char *problem = make_steps(instance, step, &ends_at_event, reached);
-  if (problem == NULL && lagrangian.event_laws != NULL) law = lagrangian.event_laws->check(instance, step->end);
+  bool has_laws = problem == NULL && lagrangian.event_laws != NULL;
+  const char *law = has_laws ? lagrangian.event_laws->check(instance, step->end) : NULL; /* violated at the end */
   if (problem == NULL && law == NULL) {
     *reached = step->end; /* an observer may have shortened the step */
     return STEP_DONE;
   }
-  if (problem == NULL) *reached = last->start;
+  if (law != NULL) *reached = last->start;
   if (*reached > step->end) *reached = last->start;
   if (*reached < step->start) *reached = step->start; /* states up to the start were reported already */
-  if (law != NULL) return stop(instance, step, law, true, *reached);
-  return stop(instance, step, problem, ends_at_event, *reached);
+  return stop(instance, step, law != NULL ? law : problem, law != NULL || ends_at_event, *reached);
 }
 
 /* The arguments and the result of do_advance(), the task of Solver.run(). */

@@ -28,12 +28,6 @@
 #include "evaluation/services.h"
 
 /*
- * Accelerations of a contact whose force has just vanished count as 0 below this number of rounding error bounds.
- * Such an acceleration is a sum of several rounding errors, more than one bound covers.
- */
-static const double parting_in_error_bound = 1e3;
-
-/*
  * Rounding error of an acceleration that other contacts keep at 0. It is a share of the largest free acceleration, or
  * of that by the largest contact force.
  */
@@ -74,8 +68,8 @@ static bool sticks_on(const struct Resolution *resolution, size_t contact) {
 /* Returns the rounding error bound of the acceleration; a larger one for a contact whose force has just vanished. */
 static double error_bound_of_acceleration(const struct Resolution *resolution, size_t contact) {
   bool parts = resolution->was_opened[contact] != 0.0;
-  double error_bound = resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
-  return parts ? fmax(parting_in_error_bound * error_bound, tolerances_of(resolution).acceleration) : error_bound;
+  return parts ? rounded_acceleration_of_gap(resolution, contact)
+               : resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
 }
 
 /* True if a contact that its force has opened in this event accelerates towards closing. */

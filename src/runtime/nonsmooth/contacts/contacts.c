@@ -503,17 +503,12 @@ static double vanishing_force(const struct Resolution *resolution) {
   return any_opened ? vanishing_share * largest_contact_force(resolution) : 0.0;
 }
 
-/* Of an acceleration that a constraint holds, in rounding error bounds. */
-static const double unheld_in_error_bound = 1e3;
-
-/*
- * True if the gap of a closed contact opens nevertheless: its constraint contradicts others, which move it apart. least:
- * Tolerances.acceleration.
- */
-static bool is_torn_apart(const struct Resolution *resolution, size_t contact, double least) {
+/* True if the gap of a closed contact opens nevertheless: its constraint contradicts others, which move it apart. */
+static bool is_torn_apart(const struct Resolution *resolution, size_t contact) {
   size_t slot = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
-  double acceleration = resolution->value[slot], bound = resolution->error_bound[slot];
-  return acceleration > fmax(unheld_in_error_bound * bound, least);
+  double acceleration = resolution->value[slot];
+  return acceleration > resolution->error_bound[slot] &&
+         acceleration > rounded_acceleration_of_gap(resolution, contact);
 }
 
 /*
@@ -523,7 +518,7 @@ static bool is_torn_apart(const struct Resolution *resolution, size_t contact, d
 static size_t find_pulling(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t found = switches->contact_count;
-  double most = 0.0, vanishing = vanishing_force(resolution), least = tolerances_of(resolution).acceleration;
+  double most = 0.0, vanishing = vanishing_force(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
     if (!contact_is_closed(resolution, i)) continue;
     double force = contact_force(resolution, i);
@@ -533,7 +528,7 @@ static size_t find_pulling(const struct Resolution *resolution) {
     bool was_closed = resolution->first_mode[i] == mode_of(resolution, switches->contacts[i].mode);
     bool parts =
         ((is_reached && was_closed && !resolution->jumped) || force < vanishing) && resolution->was_opened[i] == 0.0;
-    if (!(force < 0.0) && !parts && !is_torn_apart(resolution, i, least)) continue;
+    if (!(force < 0.0) && !parts && !is_torn_apart(resolution, i)) continue;
     if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
     most = fmin(force, 0.0);
     found = i;

@@ -126,8 +126,8 @@ static bool has_rate(const struct Resolution *resolution, const struct PlaneStat
 bool plane_is_unheld(const struct Resolution *resolution, const struct PlaneState *state) {
   size_t slot = friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE);
   double bound = fmax(resolution->error_bound[slot], resolution->error_bound[slot + FRICTION_VALUES]);
-  return state->mode == PLANE_STICKS &&
-         has_rate(resolution, state, fmax(bound, tolerances_of(resolution).acceleration));
+  return state->mode == PLANE_STICKS && has_rate(resolution, state, bound) &&
+         has_rate(resolution, state, tolerances_of(resolution).acceleration);
 }
 
 /* True if the velocity of a friction that slid changes although it sticks. */
