@@ -18,7 +18,7 @@ static double next(unsigned *seed) {
 
 static void set_pattern(const struct Position *positions, size_t count) {
   struct Graph *graph = graph_create();
-  struct Elimination elimination = eliminate(graph, SIZE, SIZE, positions, count);
+  struct Elimination elimination = eliminate(graph, SIZE, NULL, positions, count);
   for (size_t i = 0; i < SIZE; i++) slot[elimination.order[i]] = (int)i;
   for (size_t i = 0; i <= SIZE; i++) start[i] = (int)elimination.start[i];
   for (size_t k = 0; k < elimination.start[SIZE]; k++) column[k] = (int)elimination.column[k];

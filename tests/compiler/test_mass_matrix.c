@@ -91,7 +91,7 @@ static void solve_by_gauss(size_t n, double m[SPARSE][SPARSE], double *x) {
 static size_t check_sparse(size_t n, const struct Position *positions, size_t count, unsigned seed) {
   double full[SPARSE][SPARSE] = {{0}}, m[POSITIONS] = {0}, x[SPARSE], expected[SPARSE];
   struct Graph *graph = graph_create();
-  struct Elimination elimination = eliminate(graph, n, n, positions, count);
+  struct Elimination elimination = eliminate(graph, n, NULL, positions, count);
   size_t index[SPARSE], *start = elimination.start, *column = elimination.column;
   for (size_t i = 0; i < n; i++) index[elimination.order[i]] = i;
   for (size_t k = 0; k < count; k++) {
@@ -144,7 +144,7 @@ static void test_order_of_elimination(void **state) {
   assert_int_equal(check_sparse(SPARSE, star, count, 2), count);
   assert_int_equal(check_sparse(SPARSE, tree, count, 3), count);
   struct Graph *graph = graph_create();
-  struct Elimination elimination = eliminate(graph, SPARSE, SPARSE, full, all);
+  struct Elimination elimination = eliminate(graph, SPARSE, NULL, full, all);
   for (size_t i = 0; i < SPARSE; i++) assert_int_equal(elimination.order[i], i);
 }
 

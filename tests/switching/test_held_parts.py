@@ -42,10 +42,38 @@ LADDER = """<coordinate name="x" velocity="vx" start="-0.5*cos(1)"/><coordinate 
 WORM = """<coordinate name="a" velocity="om"/><coordinate name="phi" velocity="W"/><kinetic>0.0005*om^2 + 0.25*W^2</kinetic>
   <force coordinate="a">6*cos(5*time)</force><force coordinate="phi">-60</force><constraint name="teeth">a - 30*phi</constraint>
   <friction name="loss" coordinate="a" force="1.5*abs(teeth.force)"/><stop coordinate="{}" max="{}"/>"""
+LED = '<coordinate name="h" velocity="vh"/><particle mass="1" y="h"/>'
+PRESSED = """<parameter name="lift" start="1"/><coordinate name="x" velocity="vx"/><coordinate name="z" velocity="vz" start="0.05"/><coordinate name="phi" velocity="om"/>
+  <coordinate name="xL" velocity="vL" start="-0.06"/><coordinate name="xR" velocity="vR" start="0.06"/><coordinate name="h" velocity="vh" start="0.05" {}/>
+  <frame name="f"><translate x="x" z="z"/><rotate axis="y" angle="phi"/></frame><shape name="ground" type="plane"/><gravity z="-9.81"/>
+  <frame name="fL"><translate x="xL" z="h"/></frame><frame name="fR"><translate x="xR" z="h"/></frame><force coordinate="xL">20</force><force coordinate="xR">-20</force>
+  <body name="mL" in="fL" mass="0.2"/><body name="mR" in="fR" mass="0.2"/><body name="B" in="f" mass="1" Iyy="0.00167"/>
+  <shape name="cube" in="f" type="box" sizeX="0.1" sizeY="0.1" sizeZ="0.1"/>
+  <shape name="left" in="fL" type="sphere" radius="0.01"/><shape name="right" in="fR" type="sphere" radius="0.01"/>
+  <contact name="l" between="left" and="cube" friction="0.6"/><contact name="r" between="right" and="cube" friction="0.6"/>
+  <contact name="c" between="cube" and="ground" friction="0.5"/>"""
+
+
+def blocks(count, unequal=""):
+    """Blocks on each other, on a floor that shakes along and up; the coefficient of the last one has this addition."""
+    text = """<parameter name="mu" start="0.3"/><gravity z="-9.81"/><coordinate name="x0" velocity="v0" acceleration="-7.2*sin(12*time)"/>
+      <coordinate name="z0" velocity="w0" acceleration="-8.1*sin(9*time)"/>"""
+    for i, j in zip(range(1, count + 1), range(count)):
+        text += f"""<coordinate name="x{i}" velocity="v{i}"/><coordinate name="z{i}" velocity="w{i}"/><particle mass="1" x="x{i}" z="z{i}"/>
+          <contact name="c{i}" gap="z{i} - z{j}"/><friction name="f{i}" velocity="v{i} - v{j}" force="(mu{unequal if i == count else ""})*c{i}.force"/>"""
+    return text
+
+
 SYSTEMS = {
     "Lifted": ON_GROUND.format(f'<coordinate name="h" velocity="vh" {DWELL}/>'),
     "Smooth": ON_GROUND.format('<coordinate name="h" velocity="vh" acceleration="lift*sin(4*time)"/>'),
-    "Led": ON_GROUND.format('<coordinate name="h" velocity="vh"/><particle mass="1" y="h"/><constraint name="k">h - lift*max(0, time - 0.2)^3</constraint>'),
+    "Led": ON_GROUND.format(LED + '<constraint name="k">h - lift*max(0, time - 0.2)^3</constraint>'),
+    "LedBehind": ON_GROUND.format(LED) + '<constraint name="k">h - lift*max(0, time - 0.2)^3</constraint>',
+    "SmoothBehind": ON_GROUND.format(LED) + '<constraint name="k">h - lift*(time/4 - sin(4*time)/16)</constraint>',
+    "Pressed": PRESSED.format(DWELL),
+    "OneBlock": blocks(1),
+    "EqualBlocks": blocks(3),
+    "HigherLimit": blocks(3, " + 0.01"),
     "Clutch": CLUTCH.format(DWELL),
     "Belt": BELT.format(DWELL),
     "Gripper": GRIPPER,
@@ -82,8 +110,10 @@ def test_a_hand_lifts_a_body_from_the_ground(kind, R, lift, height):
 def test_a_hand_that_begins_to_move_smoothly(kind, R, lift, share):
     """Its acceleration sin(4t), or 6(t - 0.2), is 0 at first, so that the constraints contradict each other only later."""
     error = 1e-6 if kind == "CoSimulation" else 1e-5  # an importer's first step is made before the modes change
-    assert at_end("Smooth", "y", kind, R=R, lift=lift) == pytest.approx(share * (1 / 4 - math.sin(4) / 16), abs=error)
-    assert at_end("Led", "y", kind, R=R, lift=lift) == pytest.approx(share * LATE**3, abs=error)
+    for name in ("Smooth", "SmoothBehind"):
+        assert at_end(name, "y", kind, R=R, lift=lift) == pytest.approx(share * (1 / 4 - math.sin(4) / 16), abs=error)
+    for name in ("Led", "LedBehind"):  # the constraint stands before or behind the friction
+        assert at_end(name, "y", kind, R=R, lift=lift) == pytest.approx(share * LATE**3, abs=error)
 
 
 @KINDS
@@ -132,3 +162,25 @@ def test_a_worm_gear_leaves_a_stop():
     angles = [[at_end(name, "phi", "CoSimulation", time) for time in (*times, 2.0)] for name in ("WormAtStop", "WormAtItsOwnStop")]
     assert angles[0][0] == pytest.approx(0.05, abs=1e-9) and angles[0][1] <= 0.05 + 1e-9
     np.testing.assert_allclose(angles[0], angles[1], rtol=1e-6)
+
+
+@KINDS
+@pytest.mark.parametrize("lift, height, force", [(1, LATE**2 / 2, 0), (-1, 0, G + 24)])
+def test_fingers_press_a_cube_on_two_corners(kind, lift, height, force):
+    """In planar motion. Two fingers with 20 N each slip downwards with friction of 12 N each, or lift the cube."""
+    end = 1.0 if lift > 0 else 0.4
+    assert at_end("Pressed", "z", kind, end, lift=lift) == pytest.approx(0.05 + height, abs=1e-6)
+    corners = [at_end("Pressed", f"c[{i}].force", kind, end, lift=lift) for i in range(1, 9)]
+    assert sum(corners) == pytest.approx(force, abs=1e-4)
+
+
+@KINDS
+@pytest.mark.parametrize("mu", [0.1, 0.3, 0.4])
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
+def test_equal_blocks_slide_together(kind, mu, tolerance):
+    """The frictions between them are at their limits all the while, within rounding. They move as one block does."""
+    if kind == "ModelExchange" and tolerance > 1e-8:
+        pytest.skip("the importer's error is larger than what is compared")
+    x = [at_end(name, variable, kind, 2.0, tolerance, mu=mu)
+         for name, variable in (("OneBlock", "x1"), *((name, f"x{i}") for name in ("EqualBlocks", "HigherLimit") for i in (1, 2, 3)))]  # fmt: skip
+    np.testing.assert_allclose(x, x[0], rtol=0, atol=max(100 * tolerance, 1e-5))

@@ -17,6 +17,14 @@ static const double further = 8.0;
 /* Relative rounding error of an operation or a library function. */
 static const double rounding_of_operation = DBL_EPSILON;
 
+/* The same for the force of a constraint, beside other terms as large as it. */
+static const double rounding_of_force = 64.0 * DBL_EPSILON;
+
+double rounding_at_limit(const double *acceleration, size_t friction) {
+  size_t constraint = lagrangian.switches->frictions[friction].constraint;
+  return rounding_of_force * fabs(acceleration[lagrangian.coordinate_count + constraint]);
+}
+
 bool indicator_is_force(const struct Instance *instance, size_t indicator) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t contacts = contact_indicator(switches, 0), frictions = friction_indicator(switches, 0);

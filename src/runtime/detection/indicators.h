@@ -36,5 +36,11 @@ bool indicator_error_bound(struct Instance *instance, double time, const double 
 /* Returns the sign that an indicator has while its mode stays: 1, -1, or 0 for a branch at rest at 0. */
 double indicator_sign(const struct Instance *instance, size_t indicator);
 
+/*
+ * Returns the rounding error of the force of a friction beside its limit. The perturbations above miss that of forces
+ * which do not depend on the state.
+ */
+double rounding_at_limit(const double *acceleration, size_t friction);
+
 /* How far an event may leave an indicator below 0, in units of its rounding error bound. */
 enum { FLOOR_IN_ERROR_BOUND = 64 };

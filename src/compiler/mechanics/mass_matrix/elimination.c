@@ -85,9 +85,16 @@ static void join(struct NeighbourSet *set, size_t row, const struct NeighbourSet
   *set = joined;
 }
 
+/* True if a row has to wait for a neighbour of a lower rank. It is pushed again when that is gone. */
+static bool has_to_wait(const unsigned char *rank, size_t row, const struct NeighbourSet *set) {
+  for (size_t i = 0; i < set->count && rank != NULL; i++)
+    if (rank[set->items[i]] < rank[row]) return true;
+  return false;
+}
+
 /* Eliminates all rows. Afterwards the sets are the columns of L below the diagonal. */
-static void eliminate_rows(const struct Graph *graph, size_t count, size_t late, struct NeighbourSet *sets,
-                           size_t *order, size_t *index) {
+static void eliminate_rows(const struct Graph *graph, size_t count, const unsigned char *rank,
+                           struct NeighbourSet *sets, size_t *order, size_t *index) {
   struct Queue queue = {0};
   bool *is_eliminated = allocate(count, sizeof *is_eliminated);
   for (size_t row = 0; row < count; row++) push(&queue, (struct QueueEntry){sets[row].count, row});
@@ -96,7 +103,7 @@ static void eliminate_rows(const struct Graph *graph, size_t count, size_t late,
     struct QueueEntry waiting = pop(&queue);
     const struct NeighbourSet *set = &sets[waiting.row];
     if (is_eliminated[waiting.row] || waiting.degree != set->count) continue;
-    if (waiting.row >= late && set->count > 0 && set->items[0] < late) continue; /* pushed again when they are gone */
+    if (has_to_wait(rank, waiting.row, set)) continue;
     is_eliminated[waiting.row] = true;
     index[waiting.row] = next;
     order[next++] = waiting.row;
@@ -125,13 +132,20 @@ static struct Elimination full_elimination(size_t count) {
   return result;
 }
 
-struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
-                             size_t position_count) {
-  if (position_count == count * (count + 1) / 2) return full_elimination(count);
+/* True if no row has a lower rank than the one before it. */
+static bool is_ascending(const unsigned char *rank, size_t count) {
+  bool ascends = true;
+  for (size_t i = 1; i < count && rank != NULL; i++) ascends &= rank[i] >= rank[i - 1];
+  return ascends;
+}
+
+struct Elimination eliminate(const struct Graph *graph, size_t count, const unsigned char *rank,
+                             const struct Position *positions, size_t position_count) {
+  if (position_count == count * (count + 1) / 2 && is_ascending(rank, count)) return full_elimination(count);
   struct Elimination result = {.order = allocate(count, sizeof(size_t)), .start = allocate(count + 1, sizeof(size_t))};
   struct NeighbourSet *sets = neighbours_of(count, positions, position_count);
   size_t *index = allocate(count, sizeof *index), *end = allocate(count, sizeof *end);
-  eliminate_rows(graph, count, late, sets, result.order, index);
+  eliminate_rows(graph, count, rank, sets, result.order, index);
   for (size_t i = 0; i < count; i++)
     for (size_t k = 0; k < sets[i].count; k++) result.start[index[sets[i].items[k]] + 1]++;
   for (size_t i = 0; i < count; i++) {

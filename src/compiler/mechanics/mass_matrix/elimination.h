@@ -31,8 +31,8 @@ int compare_positions(const void *first, const void *second);
 
 /*
  * Orders a matrix of count rows, with elements at these positions of the lower triangle and on all of the diagonal. A
- * row from `late` on is eliminated after all its neighbours below `late`, as a constraint after its coordinates; late
- * is count for none. Counts its work in the graph; beyond the limit the result has no meaning.
+ * row is eliminated after all its neighbours of a lower rank, as a constraint after its coordinates. rank: [count], or
+ * NULL if all are equal. Counts its work in the graph; beyond the limit the result has no meaning.
  */
-struct Elimination eliminate(const struct Graph *graph, size_t count, size_t late, const struct Position *positions,
-                             size_t position_count);
+struct Elimination eliminate(const struct Graph *graph, size_t count, const unsigned char *rank,
+                             const struct Position *positions, size_t position_count);

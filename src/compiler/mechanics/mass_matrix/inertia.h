@@ -46,7 +46,8 @@ struct Inertia {
   struct InertiaBlock *blocks;
   size_t block_count;
   size_t *block_of, *index_in_block; /* of each row: its block, and its position in the block */
-  struct Pivot *pivots;              /* of unrolled blocks */
+  unsigned char *rank;  /* of each row: rows of a lower rank are eliminated before it, if they are coupled */
+  struct Pivot *pivots; /* of unrolled blocks */
   size_t pivot_count;
 };
 

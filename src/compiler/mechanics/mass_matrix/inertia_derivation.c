@@ -1,5 +1,7 @@
 #include "mechanics/mass_matrix/inertia_derivation.h"
 
+#include <string.h>
+
 #include "algebra/simplify.h"
 #include "base/memory.h"
 #include "mechanics/mass_matrix/elimination.h"
@@ -60,6 +62,25 @@ static void create_block_of_tree(struct Inertia *inertia, size_t number, size_t 
   block->start = allocate(block->count + 1, sizeof *block->start);
 }
 
+/*
+ * Returns the rank of each row for the elimination. The constraints that depend on others are those that are eliminated
+ * last. Of constraints that contradict each other, a friction has to give way first, then a contact.
+ */
+static unsigned char *ranks_of(const struct Model *model, size_t count) {
+  enum { OF_COORDINATE, OF_CONSTRAINT, OF_CONTACT, OF_FRICTION };
+  const struct Switches *switches = &model->switches;
+  size_t coordinates = model->coordinates.count;
+  unsigned char *rank = allocate(count, sizeof *rank);
+  memset(rank, OF_COORDINATE, count);
+  if (count == coordinates) return rank;
+  memset(rank + coordinates, OF_CONSTRAINT, count - coordinates);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    rank[coordinates + switches->contacts[i].constraint] = OF_CONTACT;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    rank[coordinates + switches->frictions[i].constraint] = OF_FRICTION;
+  return rank;
+}
+
 /* Fills in a block with the elements from `from` to before `to`; members are its rows, ascending. */
 static void create_block(const struct Graph *graph, struct Inertia *inertia, size_t number, size_t *members,
                          const struct Elements *elements, size_t from, size_t to) {
@@ -68,8 +89,9 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
   for (size_t k = from; k < to; k++)
     local[k - from] = (struct Position){inertia->index_in_block[elements->positions[k].row],
                                         inertia->index_in_block[elements->positions[k].column]};
-  size_t late = block->count - block->constraint_count;
-  struct Elimination elimination = eliminate(graph, block->count, late, local, to - from);
+  unsigned char *rank = allocate(block->count, sizeof *rank);
+  for (size_t i = 0; i < block->count; i++) rank[i] = inertia->rank[members[i]];
+  struct Elimination elimination = eliminate(graph, block->count, rank, local, to - from);
   block->start = elimination.start;
   block->column = elimination.column;
   block->coordinates = elimination.order;
@@ -83,13 +105,14 @@ static void create_block(const struct Graph *graph, struct Inertia *inertia, siz
 }
 
 /* Creates the blocks of a matrix of count rows, the last of which are those of constraints. */
-static struct Inertia *create_blocks(const struct Graph *graph, size_t count, size_t constraint_count,
+static struct Inertia *create_blocks(const struct Model *model, size_t count, size_t constraint_count,
                                      struct Elements *elements, const struct Trees *trees) {
   struct ConnectedComponents components = find_components(count, elements);
   size_t *start = sort_by_components(elements, &components);
   struct Inertia *inertia = allocate(1, sizeof *inertia);
   *inertia = (struct Inertia){.count = count,
                               .coordinate_count = count - constraint_count,
+                              .rank = ranks_of(model, count),
                               .block_of = components.of,
                               .index_in_block = allocate(count, sizeof(size_t))};
   inertia->block_count = components.count;
@@ -102,7 +125,7 @@ static struct Inertia *create_blocks(const struct Graph *graph, size_t count, si
   for (size_t b = 0; b < components.count; b++) {
     size_t first = members[b][0], tree = first < inertia->coordinate_count ? trees->tree_of[first] : NO_TREE;
     if (tree != NO_TREE) create_block_of_tree(inertia, b, members[b], trees->items[tree].tree);
-    else create_block(graph, inertia, b, members[b], elements, start[b], start[b + 1]);
+    else create_block(model->graph, inertia, b, members[b], elements, start[b], start[b + 1]);
   }
   return inertia;
 }
@@ -147,14 +170,13 @@ static void append_open_rows(const struct Model *model, struct Elements *element
 /* Creates the blocks of the matrix K with constraints (saddle.h). */
 static struct Inertia *create_constrained(const struct Model *model, struct Elements *elements,
                                           const struct ConstraintBlock *constraint_block, const struct Trees *trees) {
-  const struct Graph *graph = model->graph;
   const struct Elements *jacobian = constraint_block->jacobian;
   size_t count = model->coordinates.count;
   if (model->unrolled) append_open_rows(model, elements);
   for (size_t k = 0; k < jacobian->count; k++)
     elements_append(elements, count + jacobian->positions[k].row, jacobian->positions[k].column, jacobian->nodes[k]);
   struct Inertia *inertia =
-      create_blocks(graph, count + constraint_block->count, constraint_block->count, elements, trees);
+      create_blocks(model, count + constraint_block->count, constraint_block->count, elements, trees);
   add_nonsymmetric(inertia, constraint_block->nonsymmetric);
   return inertia;
 }
@@ -170,7 +192,7 @@ struct Inertia *inertia_derive(const struct Model *model, const Node *momentum, 
   struct Trees trees = find_trees(model, kinematic_trees, rows);
   struct Elements elements = elements_of(model, momentum, trees.tree_of);
   couple_trees(&trees, count, &elements);
-  struct Inertia *inertia = create_blocks(model->graph, count, 0, &elements, &trees);
+  struct Inertia *inertia = create_blocks(model, count, 0, &elements, &trees);
   bool is_right = graph_limit(model->graph) != NULL || pivots_check(model, inertia, diagnostics);
   if (!is_right || constraint_block->count > 0)
     inertia = is_right ? create_constrained(model, &elements, constraint_block, &trees) : NULL;

@@ -255,6 +255,6 @@ struct Elimination *lu_pattern_create(const struct Graph *graph, const struct Ja
                                       size_t coordinates, size_t rows) {
   struct Position *positions = allocate(jacobian->count + rows, sizeof *positions);
   struct Elimination *pattern = allocate(1, sizeof *pattern);
-  *pattern = eliminate(graph, rows, rows, positions, find_positions(jacobian, coordinates, rows, positions));
+  *pattern = eliminate(graph, rows, NULL, positions, find_positions(jacobian, coordinates, rows, positions));
   return is_sparse(pattern, rows) ? pattern : NULL;
 }

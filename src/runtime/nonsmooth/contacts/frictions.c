@@ -62,7 +62,8 @@ static void take_direction(const struct Resolution *resolution, size_t friction,
   state->stiction = fmax(value[stiction], 0.0); /* may be negative by rounding where mu |N| passes through 0 */
   if (state->mode != 0.0) return;
   state->force = state->direction * force;
-  state->error_bound_of_force = resolution->force_error_bound[friction] + error_bound[stiction];
+  state->error_bound_of_force = fmax(resolution->force_error_bound[friction] + error_bound[stiction],
+                                     rounding_at_limit(resolution->acceleration, friction));
 }
 
 /* True if a velocity is larger than a kink of the constraints or an error of the method can cause. */
@@ -142,9 +143,11 @@ static double mode_without_hold(const struct Resolution *resolution, const struc
 static double mode_from_rest(const struct Resolution *resolution, const struct FrictionState *state) {
   double passing = mode_without_hold(resolution, state);
   if (passing != 0.0) return passing;
-  /* At the limit a friction sticks; an importer stops beyond it. After coming to rest there rounding may exceed it. */
-  double limit = state->stiction + (state->is_hit && !state->is_first ? state->error_bound_of_force : 0.0);
-  bool has_reached = state->is_hit && state->is_first && state->is_near_limit && !resolution->jumped;
+  /* At the limit a friction sticks, within rounding, unless its event was located there. Importers stop beyond it. */
+  bool is_located = state->is_hit && state->is_first;
+  double rounding = is_located || resolution->occasion == IN_EXCHANGE ? 0.0 : state->error_bound_of_force;
+  double limit = state->stiction + rounding;
+  bool has_reached = is_located && state->is_near_limit && !resolution->jumped;
   bool slips = state->force > limit || has_reached;
   return slips ? state->direction : 0.0;
 }
