@@ -367,6 +367,11 @@ static inline bool is_in_plane(const struct SwitchTable *switches, size_t fricti
   return plane_of(switches, friction) < switches->plane_count;
 }
 
+/* True if the friction follows from the force of the contact. */
+static inline bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
+  return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
+}
+
 /* Returns the sample that switches a branch; NULL for none. */
 static inline const struct SampleMetadata *sample_of(const struct SwitchTable *switches, size_t branch) {
   for (size_t i = 0; i < switches->sample_count; i++)

@@ -325,7 +325,7 @@ static void append_values(const struct Model *model, const struct Equations *equ
 }
 
 /* True if the friction depends on the contact force. */
-static bool rests_on(const struct Model *model, const struct Friction *friction, const struct Contact *contact) {
+static bool depends_on(const struct Model *model, const struct Friction *friction, const struct Contact *contact) {
   struct Cone *cone = model->graph->cone;
   cone_collect(cone, model->graph, &friction->sliding, 1);
   return cone_has(cone, model->unknowns.forces[contact->constraint]);
@@ -342,7 +342,8 @@ static void find_forces(const struct Model *model, struct SwitchingExpressions *
     switching->friction_varies |= !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding) ||
                                   !graph_is_constant_in_time(model->graph, switches->frictions[i].sliding_back);
     for (size_t j = 0; j < switches->contact_count; j++)
-      any |= rests[i * switches->contact_count + j] = rests_on(model, &switches->frictions[i], &switches->contacts[j]);
+      any |= rests[i * switches->contact_count + j] =
+          depends_on(model, &switches->frictions[i], &switches->contacts[j]);
   }
   switching->rests = any ? rests : NULL;
 }

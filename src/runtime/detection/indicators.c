@@ -17,12 +17,22 @@ static const double further = 8.0;
 /* Relative rounding error of an operation or a library function. */
 static const double rounding_of_operation = DBL_EPSILON;
 
-/* The same for the force of a constraint, beside other terms as large as it. */
+/* The same for the force of a friction, relative to it or to the force of its contact. */
 static const double rounding_of_force = 64.0 * DBL_EPSILON;
 
-double rounding_at_limit(const double *acceleration, size_t friction) {
-  size_t constraint = lagrangian.switches->frictions[friction].constraint;
-  return rounding_of_force * fabs(acceleration[lagrangian.coordinate_count + constraint]);
+/* Returns the force of a contact: of its constraint, and of a constant beside it. */
+static double contact_force_in(const struct Instance *instance, const double *acceleration, size_t contact) {
+  const struct ContactMetadata *metadata = &lagrangian.switches->contacts[contact];
+  double carried = metadata->carried != metadata->mode ? instance->parameter[metadata->carried] : 0.0;
+  return fabs(acceleration[lagrangian.coordinate_count + metadata->constraint]) + carried;
+}
+
+double rounding_at_limit(const struct Instance *instance, const double *acceleration, size_t friction) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  double size = fabs(acceleration[lagrangian.coordinate_count + switches->frictions[friction].constraint]);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (rests_on(switches, friction, i)) size = fmax(size, contact_force_in(instance, acceleration, i));
+  return rounding_of_force * size;
 }
 
 bool indicator_is_force(const struct Instance *instance, size_t indicator) {

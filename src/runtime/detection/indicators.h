@@ -40,7 +40,7 @@ double indicator_sign(const struct Instance *instance, size_t indicator);
  * Returns the rounding error of the force of a friction beside its limit. The perturbations above miss that of forces
  * which do not depend on the state.
  */
-double rounding_at_limit(const double *acceleration, size_t friction);
+double rounding_at_limit(const struct Instance *instance, const double *acceleration, size_t friction);
 
 /* How far an event may leave an indicator below 0, in units of its rounding error bound. */
 enum { FLOOR_IN_ERROR_BOUND = 64 };

@@ -115,10 +115,6 @@ double sliding_share(const struct Resolution *resolution, size_t friction) {
   return resolution->value[friction_slot(switches, friction, FRICTION_VELOCITY)] / speed;
 }
 
-bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact) {
-  return switches->rests_on != NULL && switches->rests_on[friction * switches->contact_count + contact];
-}
-
 /* The caller selects contacts and frictions by takes_part. */
 static bool contact_takes_part(const struct Resolution *resolution, size_t contact) {
   return resolution->takes_part[contact] != 0.0;

@@ -75,9 +75,6 @@ bool let_stopped_slip(struct Resolution *resolution);
 /* Returns the factor of the force of a sliding friction: the sign of the velocity, or a component of its direction. */
 double sliding_share(const struct Resolution *resolution, size_t friction);
 
-/* True if the friction follows from the force of the contact. */
-bool rests_on(const struct SwitchTable *switches, size_t friction, size_t contact);
-
 /* True if the gap is at most 0 within rounding, or its zero has been located at this event. */
 bool is_touching(const struct Resolution *resolution, size_t contact);
 

@@ -63,7 +63,7 @@ static void take_direction(const struct Resolution *resolution, size_t friction,
   if (state->mode != 0.0) return;
   state->force = state->direction * force;
   state->error_bound_of_force = fmax(resolution->force_error_bound[friction] + error_bound[stiction],
-                                     rounding_at_limit(resolution->acceleration, friction));
+                                     rounding_at_limit(resolution->instance, resolution->acceleration, friction));
 }
 
 /* True if a velocity is larger than a kink of the constraints or an error of the method can cause. */
