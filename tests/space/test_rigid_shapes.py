@@ -476,3 +476,12 @@ def test_flat_boxes_touch_at_four_vertices(side, count, tmp_path):
     result = fmu.lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0, result.stderr
     assert (tmp_path / "out" / "modelDescription.xml").read_text().count('.closed"') == count
+
+
+@pytest.mark.parametrize("name", ["touch.force", "touch.friction.force"])
+def test_forces_of_several_points_need_an_index(name, tmp_path):
+    item, text = name.replace(".", "[{}].", 1), BOX_IN_PLANE.replace("</system>", f'<output name="o">{name}</output></system>')
+    (tmp_path / "system.xml").write_text(text)
+    result = fmu.lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 1
+    assert f"unknown name '{name}'; expected {item.format(1)}, ..., {item.format(4)}, or sum(i, 1, 4, {item.format('i')})" in result.stderr

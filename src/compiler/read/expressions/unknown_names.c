@@ -37,23 +37,32 @@ static char *components_of(const struct Parser *parser, const char *body, size_t
   return list;
 }
 
-/* Returns the largest n for which name[1], ..., name[n] are known, up to LIMIT. */
-static int last_index(const struct Parser *parser, const char *name) {
-  enum { LIMIT = 1000 };
-  int last = 0;
-  while (last < LIMIT && is_known(parser, format_text("%s[%d]", name, last + 1))) last++;
-  return last;
+/* Returns the name of an item of a list, such as c[2].force of the list c and the ending .force. */
+static char *item_of(const char *list, int index, const char *ending) {
+  return format_text("%s[%d]%s", list, index, ending);
 }
 
-/* Reports a name of a list without an index, or with a wrong one. False if there is no such list. */
-static bool report_index(struct Parser *parser, const char *name) {
-  const char *bracket = name[strlen(name) - 1] == ']' ? strrchr(name, '[') : NULL;
-  char *list = format_text("%.*s", (int)(bracket != NULL ? (size_t)(bracket - name) : strlen(name)), name);
-  int last = last_index(parser, list), first = is_known(parser, format_text("%s[0]", list)) ? 0 : 1;
+/* Reports a name of a list without an index, or with a wrong one. False if the list has no such items. */
+static bool report_item(struct Parser *parser, const char *name, const char *list, const char *ending) {
+  enum { LIMIT = 1000 };
+  int last = 0, first = is_known(parser, item_of(list, 0, ending)) ? 0 : 1;
+  while (last < LIMIT && is_known(parser, item_of(list, last + 1, ending))) last++;
+  char *whole = strchr(name, '[') == NULL ? format_text(", or sum(i, %d, %d, %s[i]%s)", first, last, list, ending) : "";
   if (last > 0)
-    FAIL(parser, "%s: unknown name '%s'; expected %s[%d], ..., %s[%d]", parser->location.what, name, list, first, list,
-         last);
+    FAIL(parser, "%s: unknown name '%s'; expected %s, ..., %s%s", parser->location.what, name,
+         item_of(list, first, ending), item_of(list, last, ending), whole);
   return last > 0;
+}
+
+/* Does so for each part of the name that may be a list: before an index, or before a dot or the end. */
+static bool report_index(struct Parser *parser, const char *name) {
+  const char *bracket = strchr(name, '['), *behind = strchr(name, ']');
+  if (bracket != NULL && behind != NULL)
+    return report_item(parser, name, format_text("%.*s", (int)(bracket - name), name), behind + 1);
+  for (const char *end = name + strlen(name); end > name; end--)
+    if ((*end == '\0' || *end == '.') && report_item(parser, name, format_text("%.*s", (int)(end - name), name), end))
+      return true;
+  return false;
 }
 
 void report_unknown_name(struct Parser *parser, const char *name) {
