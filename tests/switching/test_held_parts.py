@@ -8,6 +8,7 @@ import math
 import fmpy
 import numpy as np
 import pytest
+from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import fmu
@@ -82,6 +83,7 @@ SYSTEMS = {
     "Belt": BELT.format(DWELL),
     "Gripper": GRIPPER,
     "YokeAndBearing": YOKE,
+    "YokeBySine": YOKE.replace("cos(p)", "sin(p)").replace('start="0.3"/><kin', 'start="0"/><kin'),
     "LeavingLadder": LADDER,
     "WormAtStop": WORM.format("phi", 0.05),
     "WormAtItsOwnStop": WORM.format("a", 1.5),
@@ -149,6 +151,18 @@ def test_a_friction_at_its_dead_centre_beside_another(kind):
         return 0.9 - 0.5 * 0.3 * ((1 - math.sin(0.3)) + (1 - math.sin(p))) - 0.2 * (p - 0.3)
 
     assert at_end("YokeAndBearing", "p", kind, 2.0) == pytest.approx(brentq(rest, math.pi / 2, 3 * math.pi / 2), abs=1e-6)
+
+
+@KINDS
+@pytest.mark.parametrize("name, lever, start", [*(("YokeAndBearing", math.cos, angle) for angle in (math.pi / 2, 3 * math.pi / 2, -math.pi / 2, 1.5)),
+                                                ("YokeBySine", math.sin, 0.0)])  # fmt: skip
+def test_a_start_at_a_dead_centre(kind, name, lever, start):
+    """The slot's friction cannot stop the crank there, where its velocity is 0: exactly, or within rounding."""
+
+    def rest(p):
+        return 0.9 - 0.5 * 0.3 * quad(lambda angle: abs(lever(angle)), start, p, points=[start + math.pi])[0] - 0.2 * (p - start)
+
+    assert at_end(name, "p", kind, 4.0, p=start) == pytest.approx(brentq(rest, start, start + 5), abs=1e-6)
 
 
 @pytest.mark.parametrize("tolerance, error", [(1e-4, 1e-2), (1e-6, 1e-4), (1e-8, 1e-6)])

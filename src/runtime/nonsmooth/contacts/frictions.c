@@ -42,6 +42,7 @@ struct FrictionState {
   double direction; /* -1 or 1: in which it slides, or would slide beyond that limit */
   double stiction;  /* in this direction */
   double error_bound, error_bound_of_rate, error_bound_of_force; /* rounding error bounds */
+  double rounding_at_limit;                                      /* of the force beside its limit */
   double largest_rate;                                           /* since the start of the event */
   bool is_hit;        /* the zero of its velocity was located, or its limit was reached */
   bool is_first;      /* it has not switched in this event resolution */
@@ -62,8 +63,8 @@ static void take_direction(const struct Resolution *resolution, size_t friction,
   state->stiction = fmax(value[stiction], 0.0); /* may be negative by rounding where mu |N| passes through 0 */
   if (state->mode != 0.0) return;
   state->force = state->direction * force;
-  state->error_bound_of_force = fmax(resolution->force_error_bound[friction] + error_bound[stiction],
-                                     rounding_at_limit(resolution->instance, resolution->acceleration, friction));
+  state->error_bound_of_force = resolution->force_error_bound[friction] + error_bound[stiction];
+  state->rounding_at_limit = rounding_at_limit(resolution->instance, resolution->acceleration, friction);
 }
 
 /* True if a velocity is larger than a kink of the constraints or an error of the method can cause. */
@@ -129,8 +130,10 @@ static double mode_without_force(const struct FrictionState *state) {
  * sticks, and the constraint force is a rounding error.
  */
 static double mode_without_hold(const struct Resolution *resolution, const struct FrictionState *state) {
+  /* Exactly at a dead centre the rate is not determined: beside it an enormous force holds the velocity. */
   bool continues = fabs(state->rate) > sticking_rate_share * state->largest_rate,
-       is_determined = fabs(state->rate) > state->error_bound_of_rate;
+       is_determined = fabs(state->rate) > state->error_bound_of_rate ||
+                       state->error_bound_of_force > jammed_force * state->stiction;
   bool is_rounding = fabs(state->force) <= least_certainty * state->error_bound_of_force;
   bool has_slid = !state->is_first && state->began != 0.0;
   double most = continues ? state->error_bound_of_force : state->force;
@@ -143,9 +146,10 @@ static double mode_without_hold(const struct Resolution *resolution, const struc
 static double mode_from_rest(const struct Resolution *resolution, const struct FrictionState *state) {
   double passing = mode_without_hold(resolution, state);
   if (passing != 0.0) return passing;
+  bool is_located = state->is_hit && state->is_first, has_come_to_rest = state->is_hit && !state->is_first;
   /* At the limit a friction sticks, within rounding, unless its event was located there. Importers stop beyond it. */
-  bool is_located = state->is_hit && state->is_first;
-  double rounding = is_located || resolution->occasion == IN_EXCHANGE ? 0.0 : state->error_bound_of_force;
+  double rounding = is_located || resolution->occasion == IN_EXCHANGE ? 0.0 : state->rounding_at_limit;
+  if (has_come_to_rest) rounding = state->error_bound_of_force;
   double limit = state->stiction + rounding;
   bool has_reached = is_located && state->is_near_limit && !resolution->jumped;
   bool slips = state->force > limit || has_reached;
