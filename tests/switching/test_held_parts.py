@@ -68,6 +68,15 @@ def blocks(count, unequal="", is_planar=False):
     return text
 
 
+def pushed(count, drive):
+    """A hand with this acceleration, which pushes touching blocks of 1 kg; each has a friction of 3 N."""
+    text = f'<coordinate name="x0" velocity="v0" acceleration="{drive}"/>'
+    for i in range(1, count + 1):
+        text += f"""<coordinate name="x{i}" velocity="v{i}"/><particle mass="1" x="x{i}"/><friction name="f{i}" velocity="v{i}" force="3"/>
+          <contact name="p{i}" gap="x{i} - x{i - 1}"/>"""
+    return text
+
+
 SYSTEMS = {
     "Lifted": ON_GROUND.format(f'<coordinate name="h" velocity="vh" {DWELL}/>'),
     "Smooth": ON_GROUND.format('<coordinate name="h" velocity="vh" acceleration="lift*sin(4*time)"/>'),
@@ -82,6 +91,9 @@ SYSTEMS = {
     "Clutch": CLUTCH.format(DWELL),
     "Belt": BELT.format(DWELL),
     "Gripper": GRIPPER,
+    **{f"Pushed{count}By{power}": pushed(count, f"3*time^{power}") for count in (1, 2, 3) for power in (0, 1, 2, 3)},
+    "HeldByFrictions": """<coordinate name="x0" velocity="v0" acceleration="3*time^2"/><coordinate name="x1" velocity="v1"/><particle mass="1" x="x1"/>
+      <friction name="f" velocity="v1" force="3"/><friction name="g" velocity="v1 - v0" force="6"/>""",
     "YokeAndBearing": YOKE,
     "YokeBySine": YOKE.replace("cos(p)", "sin(p)").replace('start="0.3"/><kin', 'start="0"/><kin'),
     "LeavingLadder": LADDER,
@@ -199,3 +211,20 @@ def test_equal_blocks_slide_together(mu, kind, tolerance):
     x = [at_end(name, variable, kind, 2.0, tolerance, mu=mu)
          for name, variable in (("OneBlock", "x1"), *((name, f"x{i}") for name in ("EqualBlocks", "HigherLimit", "PlanarBlocks") for i in (1, 2, 3)))]  # fmt: skip
     np.testing.assert_allclose(x, x[0], rtol=0, atol=max(100 * tolerance, 1e-5))
+
+
+@KINDS
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("power", [0, 1, 2, 3])
+def test_a_hand_that_drives_blocks_from_rest(kind, count, power):
+    """With the acceleration 3 t^n. The last block is where the hand is; the forces are those that accelerate what is before them, and frictions."""
+    tolerance, end = (1e-5 if kind == "ModelExchange" else 1e-8), 3 / ((power + 1) * (power + 2))
+    name = f"Pushed{count}By{power}"
+    assert at_end(name, f"x{count}", kind) == pytest.approx(end, abs=tolerance)
+    assert at_end(name, "p1.force", kind) == pytest.approx(6 * count, rel=1e-4)
+
+
+@pytest.mark.parametrize("tolerance", [1e-3, 1e-6, 1e-9])
+def test_frictions_alone_move_a_block_smoothly(tolerance):
+    """The stronger friction holds it to a hand with the acceleration 3 t^2."""
+    assert at_end("HeldByFrictions", "x1", "CoSimulation", tolerance=tolerance) == pytest.approx(0.25, abs=10 * tolerance)

@@ -351,25 +351,31 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   return pass_event(instance, step, time, indicator, progress);
 }
 
-/* In communication steps: the time after which constraints that begin to contradict each other do so clearly. */
-static const double moment_share = 1e-4;
+/* In communication steps: the shortest moment after which constraints may contradict each other clearly. */
+static const double least_moment = 1e-4;
+
+/* Sets *changes if the modes change for a later time, to which the state is extrapolated. False if there are none. */
+static bool change_modes(struct Instance *instance, double begin, double time, bool *changes) {
+  double *state = instance->event_state, *rate = state + lagrangian.state_count;
+  if (!lagrangian.solver->interpolate(instance, begin, state)) return false;
+  if (!solver_derivatives(instance, begin, state, rate)) return false;
+  for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += (time - begin) * rate[i];
+  return resolve(instance, time, state, AT_CHANGE, 0, changes) == NULL;
+}
 
 /*
- * Finds the modes a moment after a time where constraints of frictions begin to contradict others. An example is a part
- * that they hold at rest, and that begins to be driven without a jump. True if modes change; the solver then starts
- * anew.
+ * Finds the modes from a time on where constraints of frictions begin to contradict others, by looking ahead, first for
+ * a short moment. An example is a part that they hold at rest, and that begins to be driven without a jump of its
+ * acceleration. True if modes change; the solver then starts anew.
  */
 static bool pass_contradiction(struct Instance *instance, const struct CommunicationStep *step, double begin,
                                struct EventProgress *progress) {
-  double time = begin + moment_share * (step->end - step->start);
-  double *state = instance->event_state, *rate = state + lagrangian.state_count;
-  bool changed = false;
-  if (!(time < step->end) || !lagrangian.solver->interpolate(instance, begin, state)) return false;
-  if (!solver_derivatives(instance, begin, state, rate)) return false;
-  for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += (time - begin) * rate[i];
-  if (resolve(instance, time, state, AT_CHANGE, 0, &changed) != NULL || !changed) return false;
-  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, time) != NULL) return false;
-  progress->searched = time;
+  bool changes = false;
+  for (double moment = least_moment; moment <= 1.0 && !changes; moment *= 10.0)
+    if (!change_modes(instance, begin, begin + moment * (step->end - step->start), &changes)) return false;
+  if (!changes || !take_event_state(instance, begin)) return false;
+  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, begin) != NULL) return false;
+  progress->searched = begin;
   return true;
 }
 

@@ -64,10 +64,12 @@ static inline enum Status resolution_status(const struct Resolution *resolution)
 /* Contacts; FMUs without any do not link them. */
 struct ContactLaws {
   /*
-   * Handles one impact, contacts that come to rest, or one that opens; sets *again if there was any. Returns NULL, or
+   * Handles one impact, contacts that come to rest, or that were lifted; sets *again if there was any. Returns NULL, or
    * the reason why the motion cannot continue.
    */
   const char *(*act)(struct Resolution *resolution, bool *again);
+  /* Opens the closed contact that pulls most. False if none pulls. */
+  bool (*open_pulling)(struct Resolution *resolution);
   /*
    * After frictions: opens and closes contacts at rest according to the unique solution for their forces. Returns NULL,
    * or the reason why there is none.
@@ -87,6 +89,8 @@ struct ContactLaws {
 
 /* Frictions; FMUs without any do not link them. */
 struct FrictionLaws {
+  /* Lets one friction along a line slide whose constraint does not hold its velocity. False if there is none. */
+  bool (*slide_unheld)(struct Resolution *resolution);
   /* Lets one friction stick or slide; sets *again if any. Returns NULL, or the reason why no mode is consistent. */
   const char *(*act)(struct Resolution *resolution, bool *again);
   /* Updates the reported modes; sets *again if any changed. False if the accelerations do not exist. */

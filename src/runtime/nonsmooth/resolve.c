@@ -31,6 +31,19 @@ static const char *act_by_contacts(struct Resolution *resolution, bool *again) {
   return laws != NULL ? laws->act(resolution, again) : NULL;
 }
 
+/* The forces of constraints that contradict others say nothing about contacts, and of frictions these give way. */
+static const char *slide_unheld(struct Resolution *resolution, bool *again) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  *again = laws != NULL && laws->slide_unheld(resolution);
+  return NULL;
+}
+
+static const char *open_pulling(struct Resolution *resolution, bool *again) {
+  const struct ContactLaws *laws = resolution->switches->contact_laws;
+  *again = laws != NULL && laws->open_pulling(resolution);
+  return NULL;
+}
+
 static const char *switch_pieces(struct Resolution *resolution, bool *again) {
   return branches_switch(resolution, false, again);
 }
@@ -100,8 +113,9 @@ static const char *switch_last_signs(struct Resolution *resolution, bool *again)
 
 /* The mechanisms that a round tries in turn, up to the first that changes something. */
 static const char *(*const actions[])(struct Resolution *resolution, bool *again) = {
-    act_by_contacts,    find_resting_velocities, switch_pieces,     act_by_frictions, resolve_contact_forces,
-    let_touching_share, report_friction_modes,   switch_last_signs, conditions_happen};
+    act_by_contacts,       slide_unheld,      open_pulling,           find_resting_velocities,
+    switch_pieces,         act_by_frictions,  resolve_contact_forces, let_touching_share,
+    report_friction_modes, switch_last_signs, conditions_happen};
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
 
 /* Makes one round; sets *again if it changed something. */

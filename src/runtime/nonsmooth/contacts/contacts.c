@@ -8,8 +8,8 @@
  * If a contact closes after PLASTIC_LIMIT of these, bodies are crushed, and the motion ends.
  *
  * act_once() makes one change a round. It opens contacts that were lifted or part, else takes an impact, else
- * closes contacts that come to rest. Otherwise it projects out penetrations, or opens the closed contact that pulls
- * most. resolve.c repeats the rounds until none changes anything.
+ * closes contacts that come to rest. Otherwise it projects out penetrations. open_pulling() opens the closed contact
+ * that pulls most. resolve.c repeats the rounds until none changes anything.
  *
  * was_opened of a contact is 1 after its force or an event has opened it, -1 after contact_forces.c has closed it, and
  * 0 again after an impact. A contact with a value other than 0 cannot come to rest in this event by itself.
@@ -629,17 +629,21 @@ static const char *act_once(struct Resolution *resolution, bool *again) {
   if (close_contacts(resolution)) return let_rest(resolution);
   bool lifts;
   if (!lift(resolution, &lifts)) return report_rest(resolution);
-  if (lifts) return NULL;
-  size_t pulling = find_pulling(resolution);
-  *again = pulling < switches->contact_count;
-  if (!*again) return NULL;
-  resolution->was_opened[pulling] = 1.0;
-  set_contact(resolution, pulling, false);
-  let_go(resolution);
+  *again = lifts;
   return NULL;
 }
 
+static bool open_pulling(struct Resolution *resolution) {
+  size_t pulling = find_pulling(resolution);
+  if (pulling == resolution->switches->contact_count) return false;
+  resolution->was_opened[pulling] = 1.0;
+  set_contact(resolution, pulling, false);
+  let_go(resolution);
+  return true;
+}
+
 const struct ContactLaws contact_laws = {.act = act_once,
+                                         .open_pulling = open_pulling,
                                          .resolve_forces = contact_forces_resolve,
                                          .share_load = contacts_share_load,
                                          .part = part,

@@ -224,6 +224,20 @@ static bool stick_again(struct Resolution *resolution) {
   return changed;
 }
 
+bool frictions_slide_unheld(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    if (is_in_plane(switches, i) || switches->frictions[i].is_given || !friction_sticks(resolution, i)) continue;
+    struct FrictionState state = friction_state(resolution, i);
+    double mode = state.has_no_force ? 0.0 : mode_without_hold(resolution, &state);
+    if (mode == 0.0 || state.is_moving || ++resolution->flips[friction_indicator(switches, i)] > FRICTION_FLIP_LIMIT)
+      continue;
+    switch_friction(resolution, i, mode);
+    return true;
+  }
+  return false;
+}
+
 const char *frictions_act(struct Resolution *resolution, bool *switched) {
   const struct SwitchTable *switches = resolution->switches;
   *switched = false;
@@ -433,7 +447,8 @@ bool frictions_explain_jam(struct Resolution *resolution, size_t branch) {
   return true;
 }
 
-const struct FrictionLaws friction_laws = {.act = frictions_act,
+const struct FrictionLaws friction_laws = {.slide_unheld = frictions_slide_unheld,
+                                           .act = frictions_act,
                                            .report = frictions_report,
                                            .report_missing = frictions_report_missing,
                                            .check = frictions_check,

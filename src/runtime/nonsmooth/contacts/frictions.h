@@ -4,6 +4,7 @@
 #include "nonsmooth/resolution.h"
 
 /* Implement the functions of these names in struct FrictionLaws. */
+bool frictions_slide_unheld(struct Resolution *resolution);
 const char *frictions_act(struct Resolution *resolution, bool *again);
 bool frictions_report(struct Resolution *resolution, bool *again);
 const char *frictions_check(struct Resolution *resolution);

@@ -166,7 +166,8 @@ static void guess(struct Instance *instance) {
   }
 }
 
-const struct FrictionLaws plane_friction_laws = {.act = act,
+const struct FrictionLaws plane_friction_laws = {.slide_unheld = frictions_slide_unheld,
+                                                 .act = act,
                                                  .report = frictions_report,
                                                  .report_missing = frictions_report_missing,
                                                  .check = frictions_check,
