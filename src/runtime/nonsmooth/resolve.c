@@ -38,7 +38,7 @@ static const char *slide_unheld(struct Resolution *resolution, bool *again) {
   return NULL;
 }
 
-static const char *open_pulling(struct Resolution *resolution, bool *again) {
+static const char *open_pulling_contacts(struct Resolution *resolution, bool *again) {
   const struct ContactLaws *laws = resolution->switches->contact_laws;
   *again = laws != NULL && laws->open_pulling(resolution);
   return NULL;
@@ -113,7 +113,7 @@ static const char *switch_last_signs(struct Resolution *resolution, bool *again)
 
 /* The mechanisms that a round tries in turn, up to the first that changes something. */
 static const char *(*const actions[])(struct Resolution *resolution, bool *again) = {
-    act_by_contacts,       slide_unheld,      open_pulling,           find_resting_velocities,
+    act_by_contacts,       slide_unheld,      open_pulling_contacts,  find_resting_velocities,
     switch_pieces,         act_by_frictions,  resolve_contact_forces, let_touching_share,
     report_friction_modes, switch_last_signs, conditions_happen};
 enum { ACTION_COUNT = sizeof actions / sizeof *actions };
