@@ -168,7 +168,7 @@ bool single_run_start(struct SingleRun *run, const struct LaneView *lane) {
   instance->solver_memory = run;
   give_state(instance->state, lane);
   give_numbers(instance->parameter, lagrangian.parameter_count, lane->parameter, lane->stride);
-  run->courses[lane->number].progress = (struct EventProgress){.searched = run->step.start};
+  run->courses[lane->number].progress = (struct EventProgress){.searched = run->step.start, .looked_ahead = -INFINITY};
   return true;
 }
 

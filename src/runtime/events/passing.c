@@ -363,20 +363,37 @@ static bool change_modes(struct Instance *instance, double begin, double time, b
   return resolve(instance, time, state, AT_CHANGE, 0, changes) == NULL;
 }
 
-/*
- * Finds the modes from a time on where constraints of frictions begin to contradict others, by looking ahead, first for
- * a short moment. An example is a part that they hold at rest, and that begins to be driven without a jump of its
- * acceleration. True if modes change; the solver then starts anew.
- */
-static bool pass_contradiction(struct Instance *instance, const struct CommunicationStep *step, double begin,
-                               struct EventProgress *progress) {
+/* Takes the modes of a moment after a time, and the state there. False if none change. */
+static bool pass_moment(struct Instance *instance, const struct CommunicationStep *step, double begin,
+                        struct EventProgress *progress) {
+  double time = begin + least_moment * (step->end - step->start);
   bool changes = false;
-  for (double moment = least_moment; moment <= 1.0 && !changes; moment *= 10.0)
+  if (!(time < step->end) || !change_modes(instance, begin, time, &changes) || !changes) return false;
+  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, time) != NULL) return false;
+  progress->searched = time;
+  return true;
+}
+
+/* Takes the modes of longer moments after a time, from that time on. False if none change, or if it was done before. */
+static bool take_later_modes(struct Instance *instance, const struct CommunicationStep *step, double begin,
+                             struct EventProgress *progress) {
+  bool changes = false;
+  if (begin <= progress->looked_ahead) return false;
+  for (double moment = 10.0 * least_moment; moment <= 1.0 && !changes; moment *= 10.0)
     if (!change_modes(instance, begin, begin + moment * (step->end - step->start), &changes)) return false;
   if (!changes || !take_event_state(instance, begin)) return false;
   if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, begin) != NULL) return false;
-  progress->searched = begin;
+  progress->searched = progress->looked_ahead = begin;
   return true;
+}
+
+/*
+ * Passes a time where constraints of frictions begin to contradict others. An example is a part that they hold at rest,
+ * and that begins to be driven without a jump of its acceleration. True if modes change; the solver then starts anew.
+ */
+static bool pass_contradiction(struct Instance *instance, const struct CommunicationStep *step, double begin,
+                               struct EventProgress *progress) {
+  return pass_moment(instance, step, begin, progress) || take_later_modes(instance, step, begin, progress);
 }
 
 /* Passes a contradiction that begins with the last step, which is then made again, or behind it. False if none does. */

@@ -26,6 +26,7 @@ struct EventProgress {
   double step_limit;        /* limit of the solver's step in s if events lie too close for longer ones; 0 for none */
   int nearer;               /* times that this was shortened since a solver step without events */
   size_t indicator;         /* of the last event */
+  double looked_ahead;      /* the last time from which modes were found by looking ahead; -INFINITY for none */
 };
 
 /* The functions of the room events/, which FMUs without events do not link. */

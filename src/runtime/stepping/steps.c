@@ -168,8 +168,9 @@ static const char *take_end(struct Instance *instance, const struct Communicatio
  */
 static const char *make_steps(struct Instance *instance, struct CommunicationStep *step, bool *ends_at_event,
                               double *reached) {
-  struct StepProgress course = {
-      .progress = {.searched = step->start, .close_events = instance->fmu_state->close_events}};
+  struct StepProgress course = {.progress = {.searched = step->start,
+                                             .close_events = instance->fmu_state->close_events,
+                                             .looked_ahead = -INFINITY}};
   memcpy(course.before, instance->fmu_state->statistics, sizeof course.before);
   for (;;) {
     const char *problem = pass_events(instance, step, &course);
