@@ -73,6 +73,9 @@ def blocks(count, unequal="", is_planar=False):
     return text
 
 
+DRIVEN_SMOOTHLY = '<coordinate name="h" velocity="vh" acceleration="60*time^3"/>'
+
+
 def pushed(count, drive):
     """A hand with this acceleration, which pushes touching blocks of 1 kg; each has a friction of 3 N."""
     text = f'<coordinate name="x0" velocity="v0" acceleration="{drive}"/>'
@@ -97,6 +100,10 @@ SYSTEMS = {
     "Belt": BELT.format(DWELL),
     "Gripper": GRIPPER,
     **{f"Pushed{count}By{power}": pushed(count, f"3*time^{power}") for count in (1, 2, 3) for power in (0, 1, 2, 3)},
+    "Clamped": f"""{DRIVEN_SMOOTHLY}<coordinate name="a" velocity="va"/><coordinate name="b" velocity="vb"/><coordinate name="y" velocity="vy"/>
+      <coordinate name="z" velocity="vz"/><particle mass="1" x="y" z="z"/><kinetic>(va^2 + vb^2)/2</kinetic><gravity z="-10"/><contact name="ground" gap="z"/>
+      <force coordinate="a">20</force><force coordinate="b">-20</force><contact name="left" gap="y - a"/><contact name="right" gap="b - y"/>
+      <friction name="l" velocity="vz - vh" force="0.4*left.force"/><friction name="r" velocity="vz - vh" force="0.4*right.force"/>""",
     "HeldByFrictions": """<coordinate name="x0" velocity="v0" acceleration="3*time^2"/><coordinate name="x1" velocity="v1"/><particle mass="1" x="x1"/>
       <friction name="f" velocity="v1" force="3"/><friction name="g" velocity="v1 - v0" force="6"/>""",
     "TwoOnARod": RODDED.format('friction name="g" velocity="v2" across="u2" force="3"', ''),
@@ -245,3 +252,11 @@ def test_a_rod_between_frictions_in_planes(kind, name, tolerance):
     start = 6 / 9
     x = 0.75 * (1 - start**3) - 1.5 * (1 - start**2) - (2.25 * start**2 - 3 * start) * (1 - start)
     assert at_end(name, "x2", kind, tolerance=tolerance) == pytest.approx(x, abs=1e-4 if kind == "ModelExchange" else 1e-7)
+
+
+def test_a_clamp_lifts_a_block_smoothly():
+    """Its pads with 8 N each hold the block, of 10 N, up to the acceleration 6 m/s2; then they slip, and it has 6 m/s2."""
+    slip = 0.1 ** (1 / 3)
+    height, velocity = 3 * slip**5, 15 * slip**4
+    expected = height + velocity * (1 - slip) + 3 * (1 - slip) ** 2
+    assert at_end("Clamped", "z", "CoSimulation") == pytest.approx(expected, abs=1e-6)

@@ -351,6 +351,9 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   return pass_event(instance, step, time, indicator, progress);
 }
 
+/* Times that modes are found from one time on by looking ahead: each may let one friction slide. */
+enum { LOOK_LIMIT = 20 };
+
 /* In communication steps: the shortest moment after which constraints may contradict each other clearly. */
 static const double least_moment = 1e-4;
 
@@ -374,11 +377,12 @@ static bool pass_moment(struct Instance *instance, const struct CommunicationSte
   return true;
 }
 
-/* Takes the modes of longer moments after a time, from that time on. False if none change, or if it was done before. */
+/* Takes the modes of longer moments after a time, from that time on. False if none change, or after many times there. */
 static bool take_later_modes(struct Instance *instance, const struct CommunicationStep *step, double begin,
                              struct EventProgress *progress) {
   bool changes = false;
-  if (begin <= progress->looked_ahead) return false;
+  progress->looks = begin > progress->looked_ahead ? 0 : progress->looks + 1;
+  if (progress->looks == LOOK_LIMIT) return false;
   for (double moment = 10.0 * least_moment; moment <= 1.0 && !changes; moment *= 10.0)
     if (!change_modes(instance, begin, begin + moment * (step->end - step->start), &changes)) return false;
   if (!changes || !take_event_state(instance, begin)) return false;

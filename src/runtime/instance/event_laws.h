@@ -27,6 +27,7 @@ struct EventProgress {
   int nearer;               /* times that this was shortened since a solver step without events */
   size_t indicator;         /* of the last event */
   double looked_ahead;      /* the last time from which modes were found by looking ahead; -INFINITY for none */
+  int looks;                /* how many more times they were from that time */
 };
 
 /* The functions of the room events/, which FMUs without events do not link. */
