@@ -31,10 +31,16 @@ static const char *act_by_contacts(struct Resolution *resolution, bool *again) {
   return laws != NULL ? laws->act(resolution, again) : NULL;
 }
 
+/* Notes that a friction has switched, to whose event an importer may have come late. */
+static void note_lag(struct Resolution *resolution, bool switched) {
+  resolution->lags |= switched && resolution->occasion != AT_START;
+}
+
 /* The forces of constraints that contradict others say nothing about contacts, and of frictions these give way. */
 static const char *slide_unheld(struct Resolution *resolution, bool *again) {
   const struct FrictionLaws *laws = resolution->switches->friction_laws;
   *again = laws != NULL && laws->slide_unheld(resolution);
+  note_lag(resolution, *again);
   return NULL;
 }
 
@@ -51,7 +57,7 @@ static const char *switch_pieces(struct Resolution *resolution, bool *again) {
 static const char *act_by_frictions(struct Resolution *resolution, bool *again) {
   const struct FrictionLaws *laws = resolution->switches->friction_laws;
   const char *problem = laws != NULL ? laws->act(resolution, again) : NULL;
-  resolution->lags |= *again && resolution->occasion != AT_START;
+  note_lag(resolution, *again);
   return problem;
 }
 
