@@ -55,11 +55,6 @@ PRESSED = """<parameter name="lift" start="1"/><coordinate name="x" velocity="vx
   <contact name="c" between="cube" and="ground" friction="0.5"/>"""
 
 
-RODDED = """<coordinate name="x1" velocity="v1"/><coordinate name="y1" velocity="u1"/><coordinate name="x2" velocity="v2"/><coordinate name="y2" velocity="u2"/>
-  <particle mass="1" x="x1" y="y1"/><particle mass="1" x="x2" y="y2"/><force coordinate="x1">9*time</force>
-  <friction name="f" velocity="v1" across="u1" force="3"/><{}/><constraint name="rod">x2 - x1{}</constraint>"""
-
-
 def blocks(count, unequal="", is_planar=False):
     """Blocks on each other, on a floor that shakes along x and up. The last coefficient has an addition; frictions act along x, or in the plane."""
     text = """<parameter name="mu" start="0.3"/><gravity z="-9.81"/><coordinate name="x0" velocity="v0" acceleration="-7.2*sin(12*time)"/>
@@ -106,8 +101,6 @@ SYSTEMS = {
       <friction name="l" velocity="vz - vh" force="0.4*left.force"/><friction name="r" velocity="vz - vh" force="0.4*right.force"/>""",
     "HeldByFrictions": """<coordinate name="x0" velocity="v0" acceleration="3*time^2"/><coordinate name="x1" velocity="v1"/><particle mass="1" x="x1"/>
       <friction name="f" velocity="v1" force="3"/><friction name="g" velocity="v1 - v0" force="6"/>""",
-    "TwoOnARod": RODDED.format('friction name="g" velocity="v2" across="u2" force="3"', ''),
-    "OneAlongALine": RODDED.format('friction name="g" velocity="v2" force="3"', ""),
     "YokeAndBearing": YOKE,
     "YokeBySine": YOKE.replace("cos(p)", "sin(p)").replace('start="0.3"/><kin', 'start="0"/><kin'),
     "LeavingLadder": LADDER,
@@ -242,16 +235,6 @@ def test_a_hand_that_drives_blocks_from_rest(kind, count, power):
 def test_frictions_alone_move_a_block_smoothly(tolerance):
     """The stronger friction holds it to a hand with the acceleration 3 t^2."""
     assert at_end("HeldByFrictions", "x1", "CoSimulation", tolerance=tolerance) == pytest.approx(0.25, abs=10 * tolerance)
-
-
-@KINDS
-@pytest.mark.parametrize("name", ["TwoOnARod", "OneAlongALine"])
-@pytest.mark.parametrize("tolerance", [1e-5, 1e-8])
-def test_a_rod_between_frictions_in_planes(kind, name, tolerance):
-    """By least norm the first friction is at its limit when the second has half of it. Both hold 9 t up to 6 N together; then x'' = (9 t - 6)/2."""
-    start = 6 / 9
-    x = 0.75 * (1 - start**3) - 1.5 * (1 - start**2) - (2.25 * start**2 - 3 * start) * (1 - start)
-    assert at_end(name, "x2", kind, tolerance=tolerance) == pytest.approx(x, abs=1e-4 if kind == "ModelExchange" else 1e-7)
 
 
 def test_a_clamp_lifts_a_block_smoothly():

@@ -204,31 +204,6 @@ static bool let_all_carry(struct RestForces *forces) {
 }
 
 /*
- * Changes what frictions carry until none that sticks needs more than its stiction. Other constraints that hold the same
- * bodies, such as a rod between them, redistribute a part of what was found. Each trial carries what is missing. False
- * if accelerations do not exist.
- */
-static bool correct_carried(struct RestForces *forces) {
-  enum { TRIAL_LIMIT = 20 };
-  struct Resolution *resolution = forces->resolution;
-  for (int trial = 0; trial < TRIAL_LIMIT; trial++) {
-    if (!plane_evaluate(resolution)) return false;
-    if (all_stick(resolution)) return true;
-    for (size_t row = forces->impulses.contact_count; row < forces->n; row += 2) {
-      struct PlaneState state = state_of_row(forces, row);
-      double load[2];
-      if (rest_slips(forces, row)) continue;
-      state.sliding = rest_forces_kinetic(forces, row);
-      for (size_t i = 0; i < 2; i++)
-        load[i] = mode_of(resolution, state.metadata->slip_direction[i]) * state.sliding - forces->force[row + i] -
-                  state.force[i];
-      plane_carry(resolution, &state, load);
-    }
-  }
-  return true;
-}
-
-/*
  * Weak frictions are those whose contacts are about to open. They keep their forces without constraints if others
  * constrain their velocities. Their constraints would take too much of a changing load again and again. False if that
  * cannot be determined.
@@ -256,7 +231,7 @@ static bool take_rests(struct RestForces *forces) {
   if (!plane_evaluate(forces->resolution)) return false;
   bool has_contacts = forces->impulses.contact_count > 0;
   if (!has_contacts && all_stick(forces->resolution)) return true;
-  return let_all_carry(forces) && correct_carried(forces) && release_weak(forces);
+  return let_all_carry(forces) && release_weak(forces);
 }
 
 /* Lets frictions without kinetic friction slip if they need more than their stiction. */
