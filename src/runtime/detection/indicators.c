@@ -20,18 +20,13 @@ static const double rounding_of_operation = DBL_EPSILON;
 /* The same for the force of a friction, relative to it or to the force of its contact. */
 static const double rounding_of_force = 64.0 * DBL_EPSILON;
 
-/* Returns the force of a contact: of its constraint, and of a constant beside it. */
-static double contact_force_in(const struct Instance *instance, const double *acceleration, size_t contact) {
-  const struct ContactMetadata *metadata = &lagrangian.switches->contacts[contact];
-  double carried = metadata->carried != metadata->mode ? instance->parameter[metadata->carried] : 0.0;
-  return fabs(acceleration[lagrangian.coordinate_count + metadata->constraint]) + carried;
-}
-
 double rounding_at_limit(const struct Instance *instance, const double *acceleration, size_t friction) {
   const struct SwitchTable *switches = lagrangian.switches;
-  double size = fabs(acceleration[lagrangian.coordinate_count + switches->frictions[friction].constraint]);
+  const double *force = acceleration + lagrangian.coordinate_count;
+  double size = fabs(force[switches->frictions[friction].constraint]);
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (rests_on(switches, friction, i)) size = fmax(size, contact_force_in(instance, acceleration, i));
+    if (rests_on(switches, friction, i))
+      size = fmax(size, fabs(force[switches->contacts[i].constraint]) + carried_force(instance, i));
   return rounding_of_force * size;
 }
 

@@ -366,15 +366,21 @@ static bool change_modes(struct Instance *instance, double begin, double time, b
   return resolve(instance, time, state, AT_CHANGE, 0, changes) == NULL;
 }
 
+/* Lets the solver start anew at a time with the modes that were found. False if that fails. */
+static bool continue_from(struct Instance *instance, const struct CommunicationStep *step, double time,
+                          struct EventProgress *progress) {
+  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, time) != NULL) return false;
+  progress->searched = time;
+  return true;
+}
+
 /* Takes the modes of a moment after a time, and the state there. False if none change. */
 static bool pass_moment(struct Instance *instance, const struct CommunicationStep *step, double begin,
                         struct EventProgress *progress) {
   double time = begin + least_moment * (step->end - step->start);
   bool changes = false;
   if (!(time < step->end) || !change_modes(instance, begin, time, &changes) || !changes) return false;
-  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, time) != NULL) return false;
-  progress->searched = time;
-  return true;
+  return continue_from(instance, step, time, progress);
 }
 
 /* Takes the modes of longer moments after a time, from that time on. False if none change, or after many times there. */
@@ -386,8 +392,8 @@ static bool take_later_modes(struct Instance *instance, const struct Communicati
   for (double moment = 10.0 * least_moment; moment <= 1.0 && !changes; moment *= 10.0)
     if (!change_modes(instance, begin, begin + moment * (step->end - step->start), &changes)) return false;
   if (!changes || !take_event_state(instance, begin)) return false;
-  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, begin) != NULL) return false;
-  progress->searched = progress->looked_ahead = begin;
+  if (!continue_from(instance, step, begin, progress)) return false;
+  progress->looked_ahead = begin;
   return true;
 }
 

@@ -1,4 +1,4 @@
-/* Predicates: the constraint of a closed contact or a sticking friction is active. */
+/* The constraint of a closed contact or a sticking friction is active; a contact may carry a force beside it. */
 #pragma once
 
 #include "instance/instance.h"
@@ -6,6 +6,12 @@
 /* True if the contact is closed. */
 static inline bool contact_holds(const struct Instance *instance, size_t contact) {
   return instance->parameter[lagrangian.switches->contacts[contact].mode] > 0.0;
+}
+
+/* Returns the force that a contact carries beside its constraint. */
+static inline double carried_force(const struct Instance *instance, size_t contact) {
+  const struct ContactMetadata *metadata = &lagrangian.switches->contacts[contact];
+  return metadata->carried != metadata->mode ? instance->parameter[metadata->carried] : 0.0;
 }
 
 /* True if the friction sticks. */

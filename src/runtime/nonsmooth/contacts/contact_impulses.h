@@ -35,12 +35,6 @@ void contact_carry(struct Resolution *resolution, size_t contact, double force);
 /* Opens a contact and lets a force press on it. */
 void contact_press(struct Resolution *resolution, size_t contact, double force);
 
-/* Returns the force that a contact carries beside its constraint. */
-static inline double carried_force(const struct Resolution *resolution, size_t contact) {
-  const struct ContactMetadata *metadata = &resolution->switches->contacts[contact];
-  return metadata->carried != metadata->mode ? mode_of(resolution, metadata->carried) : 0.0;
-}
-
 /* Returns a part of a contact's values, such as CONTACT_GAP, from the last evaluation. */
 static inline double contact_value(const struct Resolution *resolution, size_t contact, size_t part) {
   return resolution->value[contact_slot(resolution->switches, contact, part)];
@@ -49,7 +43,8 @@ static inline double contact_value(const struct Resolution *resolution, size_t c
 /* Returns the force of a closed contact; negative if it pulls. */
 static inline double contact_force(const struct Resolution *resolution, size_t contact) {
   size_t constraint = resolution->switches->contacts[contact].constraint;
-  return resolution->acceleration[lagrangian.coordinate_count + constraint] + carried_force(resolution, contact);
+  return resolution->acceleration[lagrangian.coordinate_count + constraint] +
+         carried_force(resolution->instance, contact);
 }
 
 /* Returns the largest size of the forces of closed contacts. */
