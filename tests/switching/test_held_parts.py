@@ -55,6 +55,12 @@ PRESSED = """<parameter name="lift" start="1"/><coordinate name="x" velocity="vx
   <contact name="c" between="cube" and="ground" friction="0.5"/>"""
 
 
+LED_TOGETHER = "".join(f'<coordinate name="x{i}" velocity="v{i}"/><particle mass="1" x="x{i}"/>' for i in (1, 2, 3)) + """{}
+  <constraint name="drive">x1 - {}</constraint><constraint name="gear">x2 - 2*x1</constraint><constraint name="other">x3 + x2</constraint>"""
+SMOOTH_PATHS = {"Cubic": ("time^3", lambda t: t**3), "Dwelling": ("max(0, time - 0.25)^3", lambda t: max(0, t - 0.25) ** 3),
+                "Swinging": ("sin(8*time)^3", lambda t: math.sin(8 * t) ** 3), "Halting": ("(1 - cos(9*time))^2", lambda t: (1 - math.cos(9 * t)) ** 2)}  # fmt: skip
+
+
 def blocks(count, unequal="", is_planar=False):
     """Blocks on each other, on a floor that shakes along x and up. The last coefficient has an addition; frictions act along x, or in the plane."""
     text = """<parameter name="mu" start="0.3"/><gravity z="-9.81"/><coordinate name="x0" velocity="v0" acceleration="-7.2*sin(12*time)"/>
@@ -101,6 +107,10 @@ SYSTEMS = {
       <friction name="l" velocity="vz - vh" force="0.4*left.force"/><friction name="r" velocity="vz - vh" force="0.4*right.force"/>""",
     "HeldByFrictions": """<coordinate name="x0" velocity="v0" acceleration="3*time^2"/><coordinate name="x1" velocity="v1"/><particle mass="1" x="x1"/>
       <friction name="f" velocity="v1" force="3"/><friction name="g" velocity="v1 - v0" force="6"/>""",
+    **{f"{name}Along{across[:1].upper()}": LED_TOGETHER.format("".join(
+        f'<coordinate name="y{i}" velocity="u{i}"/><kinetic>u{i}^2/2</kinetic><constraint name="c{i}">y{i} - x{i}</constraint>'
+        f'<friction name="f{i}" velocity="v{i}" {across.format(i)}force="3"/>' for i in (1, 2, 3)), path)
+       for name, (path, _) in SMOOTH_PATHS.items() for across in ("", 'across="u{}" ')},
     "YokeAndBearing": YOKE,
     "YokeBySine": YOKE.replace("cos(p)", "sin(p)").replace('start="0.3"/><kin', 'start="0"/><kin'),
     "LeavingLadder": LADDER,
@@ -243,3 +253,12 @@ def test_a_clamp_lifts_a_block_smoothly():
     height, velocity = 3 * slip**5, 15 * slip**4
     expected = height + velocity * (1 - slip) + 3 * (1 - slip) ** 2
     assert at_end("Clamped", "z", "CoSimulation") == pytest.approx(expected, abs=1e-6)
+
+
+@KINDS
+@pytest.mark.parametrize("path", SMOOTH_PATHS)
+def test_frictions_that_one_drive_leads_from_rest(kind, path):
+    """The velocities of several bodies leave rest at one time, without accelerations; so do the modes of their frictions."""
+    for name in (f"{path}Along", f"{path}AlongA"):
+        moved = at_end(name, "x3", kind, stop_time=0.9, tolerance=1e-6)
+        assert moved == pytest.approx(-2 * SMOOTH_PATHS[path][1](0.9), abs=1e-9 if kind == "CoSimulation" else 1e-4)

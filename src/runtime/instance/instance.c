@@ -1,5 +1,6 @@
 #include "instance/instance.h"
 
+#include <math.h>
 #include <string.h>
 
 #include "instance/initial_state.h"
@@ -55,6 +56,7 @@ void instance_reset(struct Instance *instance) {
   instance->reported_impossible_start = instance->reported_straight_input = false;
   instance->reported_other_forces = instance->reported_other_impulses = false;
   instance->reported_singularity = 0;
+  instance->departure_time = -INFINITY;
 }
 
 void instance_use(struct Instance *instance, struct FmuState *fmu_state) {

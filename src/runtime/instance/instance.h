@@ -119,7 +119,7 @@ struct Instance {
   double *point_work;             /* of generated functions: lagrangian.work_count */
   struct ProjectionWork *projection_work;
   double *switching_work;               /* event_laws->work_count() */
-  double departure;                     /* the sign with which a branch at rest at 0 last left it */
+  double departure, departure_time;     /* the sign with which a branch at rest at 0 last left it, and when */
   bool uses_event_mode;                 /* co-simulation: the importer handles events between steps */
   bool stops_at_events;                 /* an event ends a communication step */
   bool lifts;                           /* the contact whose gap reached 0 in the last event lifts */

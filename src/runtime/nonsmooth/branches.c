@@ -62,7 +62,8 @@ static bool passes(const struct Resolution *resolution, size_t branch) {
  */
 static bool stays_at_zero(const struct Resolution *resolution, size_t branch) {
   const struct SwitchTable *switches = resolution->switches;
-  bool rests = is_prescribed(resolution, branch) || (resolution->has_rested && resolution->value[branch] == 0.0);
+  bool has_stopped = is_prescribed(resolution, branch) && !resolution->is_beside_departure;
+  bool rests = has_stopped || (resolution->has_rested && resolution->value[branch] == 0.0);
   for (size_t i = 0; i < switches->friction_count && !switches->branches[branch].is_last_sign; i++)
     rests |= resolution->began[i] != 0.0 && friction_holds(resolution->instance, i);
   return rests;

@@ -45,6 +45,7 @@ struct Resolution {
   bool is_evaluated;                      /* value[] and error_bound are valid */
   bool has_rested, has_left_rest;         /* a velocity has come to rest, or has left it */
   bool is_departure;                      /* the indicator, of a branch, was at rest at 0 until the event */
+  bool is_beside_departure;               /* another one has left 0 at this time, in the event before */
   bool has_started;                       /* contacts and frictions have their modes of the start, for AT_START */
   bool has_shared;                        /* contacts at rest share the load */
   bool has_several_motions;               /* several motions of the frictions were logged */

@@ -257,6 +257,8 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
   resolution.indicator = indicator;
   resolution.is_departure = occasion == AT_EVENT && indicator < resolution.switches->branch_count &&
                             mode_of(&resolution, resolution.switches->branches[indicator].mode) == 0.0;
+  resolution.is_beside_departure = time == instance->departure_time;
+  if (resolution.is_departure) instance->departure_time = time;
   for (size_t i = 0; i < switching_count(resolution.switches); i++)
     resolution.first_mode[i] = switching_mode(&resolution, i);
   const char *problem = begin_resolution(&resolution);
