@@ -144,17 +144,19 @@ static Node lower_indicator(const struct Model *model, const struct Friction *al
 }
 
 /*
- * Returns the upper indicator. It falls through 0 if the speed rises to upper, or, while slipping along the slip
- * direction, the velocity perpendicular to it. With a negative upper it does so if the velocity along the slip
- * direction falls to it.
+ * Returns the upper indicator. It falls through 0 if, while creeping, the speed rises to upper, or the velocity turns by
+ * 90 degrees from the slip direction. While slipping along the slip direction it does so if the velocity perpendicular
+ * to it rises to upper. With a negative upper it does so if the velocity along the slip direction falls to it.
  */
 static Node upper_indicator(const struct Model *model, const struct Friction *along) {
   struct Graph *graph = model->graph;
-  Node upper = along->plane.upper, speed = square_of_speed(graph, along);
+  Node upper = along->plane.upper, ahead = velocity_along_slip(graph, along, false);
   Node aside = power_number(graph, velocity_along_slip(graph, along, true), 2.0);
-  Node square = choose_node(graph, along->mode, speed, aside);
-  Node ahead = subtract(graph, velocity_along_slip(graph, along, false), upper);
-  return choose_node(graph, upper, subtract(graph, upper, divide(graph, square, upper)), ahead);
+  Node square = choose_node(graph, along->mode, square_of_speed(graph, along), aside);
+  Node below = subtract(graph, upper, divide(graph, square, upper));
+  Node creeps = divide(graph, multiply(graph, below, ahead), upper);
+  Node bounded = choose_node(graph, along->mode, creeps, below);
+  return choose_node(graph, upper, bounded, subtract(graph, ahead, upper));
 }
 
 static Node indicator_by_axis(const struct Model *model, const struct Friction *friction) {

@@ -208,13 +208,17 @@ void resolution_restore_modes(struct Resolution *resolution) {
   resolution->instance->parameter_constants_are_stale = true;
 }
 
-bool resolution_project_velocities(struct Resolution *resolution) {
+bool resolution_find_correction(struct Resolution *resolution) {
   struct Instance *instance = resolution->instance;
-  double *velocity = resolution->state + lagrangian.coordinate_count;
   if (evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Point point = solver_point(instance, resolution->time, resolution->state);
   instance->singular = lagrangian.constraints.correct_velocities(&point, resolution->correction);
-  if (instance->singular != 0 || !are_finite(resolution->correction, lagrangian.coordinate_count)) return false;
+  return instance->singular == 0 && are_finite(resolution->correction, lagrangian.coordinate_count);
+}
+
+bool resolution_project_velocities(struct Resolution *resolution) {
+  double *velocity = resolution->state + lagrangian.coordinate_count;
+  if (!resolution_find_correction(resolution)) return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += resolution->correction[i];
   resolution->changed = true;
   return true;

@@ -151,7 +151,10 @@ void resolution_values_of_force(const struct Resolution *resolution, const struc
 /* Returns the accelerations of the last evaluation. */
 const double *resolution_accelerations(const struct Resolution *resolution);
 
-/* Projects the velocities onto the active constraints, by the least change in the metric of M. False if that fails. */
+/* Finds the least change of the velocities, in the metric of M, onto the active constraints. False if that fails. */
+bool resolution_find_correction(struct Resolution *resolution);
+
+/* Makes this change. False if that fails. */
 bool resolution_project_velocities(struct Resolution *resolution);
 
 /*

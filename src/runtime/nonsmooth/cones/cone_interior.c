@@ -52,6 +52,9 @@ static const double least_path_pivot = 1e-15;
 /* mu at which Newton's method is tried at each step, and at which the path ends; rates and impulses are of order 1. */
 static const double nearly_none = 1e-6, none = 1e-15;
 
+/* mu at which it is tried on a centered path. Below it, rounding of W decides on the forces that W does not determine. */
+static const double nearly_rounded = 1e-12;
+
 /*
  * A residual up to which a path has ended at a solution. Where a friction that sticks is at its limit, both s and y of
  * its pair fall as sqrt(mu), and the associated problem ends no nearer.
@@ -332,8 +335,9 @@ static bool follow_central_path(struct Interior *interior) {
   start_path(interior);
   for (int step = 0; step < PATH_STEPS && length > 0.0 && mu > none; step++) {
     mu = mean_product(interior);
-    bool is_near = mu < nearly_none || (!interior->is_associated && step % TRIAL_STEPS == TRIAL_STEPS - 1);
-    if (is_near && !interior->is_centered && try_newton(interior)) return true;
+    bool is_trial = !interior->is_associated && step % TRIAL_STEPS == TRIAL_STEPS - 1;
+    bool is_near = interior->is_centered ? mu < nearly_rounded : mu < nearly_none || is_trial;
+    if (is_near && try_newton(interior)) return true;
     length = find_path_step(interior, mu * centering[length < long_step]);
     take_path_step(interior, length);
   }

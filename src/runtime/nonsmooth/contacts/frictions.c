@@ -142,18 +142,28 @@ static double mode_without_hold(const struct Resolution *resolution, const struc
   return has_slid && state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
 }
 
-/* Returns the mode of a friction that sticks: 0, or the direction in which it begins to slide. */
-static double mode_from_rest(const struct Resolution *resolution, const struct FrictionState *state) {
-  double passing = mode_without_hold(resolution, state);
-  if (passing != 0.0) return passing;
+/* True if a friction that sticks begins to slide. */
+static bool is_overcome(const struct Resolution *resolution, const struct FrictionState *state) {
   bool is_located = state->is_hit && state->is_first, has_come_to_rest = state->is_hit && !state->is_first;
   /* At the limit a friction sticks, within rounding, unless its event was located there. Importers stop beyond it. */
   double rounding = is_located || resolution->occasion == IN_EXCHANGE ? 0.0 : state->rounding_at_limit;
   if (has_come_to_rest) rounding = state->error_bound_of_force;
   double limit = state->stiction + rounding;
   bool has_reached = is_located && state->is_near_limit && !resolution->jumped;
-  bool slips = state->force > limit || has_reached;
-  return slips ? state->direction : 0.0;
+  return state->force > limit || has_reached;
+}
+
+/* Returns the mode of a friction that sticks: 0, or the direction in which it begins to slide. */
+static double mode_from_rest(const struct Resolution *resolution, const struct FrictionState *state) {
+  double passing = mode_without_hold(resolution, state);
+  if (passing != 0.0) return passing;
+  return is_overcome(resolution, state) ? state->direction : 0.0;
+}
+
+bool friction_is_overcome(const struct Resolution *resolution, size_t friction) {
+  struct FrictionState state = friction_state(resolution, friction);
+  if (state.mode != 0.0 || state.has_no_force || (state.is_moving && state.may_jump)) return false;
+  return mode_without_hold(resolution, &state) == 0.0 && is_overcome(resolution, &state);
 }
 
 /* Returns the mode of a friction that slides at a velocity that has not jumped. */
@@ -196,8 +206,7 @@ void frictions_report_missing(const struct Resolution *resolution, const char *m
               resolution->time, missing, switches->frictions[worst].name);
 }
 
-/* Sets the mode. A friction that leaves rest acts with its stiction as long as others keep its velocity at 0. */
-static void switch_friction(struct Resolution *resolution, size_t friction, double mode) {
+void friction_switch(struct Resolution *resolution, size_t friction, double mode) {
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   bool is_constrained = false;
   resolution_set_mode(resolution, metadata->mode, mode);
@@ -232,20 +241,34 @@ bool frictions_slide_unheld(struct Resolution *resolution) {
     double mode = state.has_no_force ? 0.0 : mode_without_hold(resolution, &state);
     if (mode == 0.0 || state.is_moving || ++resolution->flips[friction_indicator(switches, i)] > FRICTION_FLIP_LIMIT)
       continue;
-    switch_friction(resolution, i, mode);
+    friction_switch(resolution, i, mode);
     return true;
   }
   return false;
 }
 
-const char *frictions_act(struct Resolution *resolution, bool *switched) {
+/* Lets all frictions stick that are at rest at the start, before those whose forces are too small begin to slide. */
+static bool stick_at_start(struct Resolution *resolution) {
+  bool changed = false;
+  for (size_t i = 0; i < resolution->switches->friction_count && resolution->occasion == AT_START; i++) {
+    if (is_in_plane(resolution->switches, i) || resolution->switches->frictions[i].is_given) continue;
+    struct FrictionState state = friction_state(resolution, i);
+    if (!state.is_first || state.mode == 0.0 || state.is_moving || state.has_no_force) continue;
+    resolution->flips[friction_indicator(resolution->switches, i)]++;
+    resolution_set_mode(resolution, resolution->switches->frictions[i].mode, 0.0);
+    changed = true;
+  }
+  return changed;
+}
+
+const char *frictions_act_beside(struct Resolution *resolution, bool keeps_overcome, bool *switched) {
   const struct SwitchTable *switches = resolution->switches;
-  *switched = false;
+  *switched = stick_at_start(resolution);
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
     if (is_in_plane(switches, i) || switches->frictions[i].is_given) continue;
     struct FrictionState state = friction_state(resolution, i);
     double mode = friction_mode(resolution, &state);
-    if (mode == state.mode) continue;
+    if (mode == state.mode || (keeps_overcome && friction_is_overcome(resolution, i))) continue;
     if (++resolution->flips[friction_indicator(resolution->switches, i)] > FRICTION_FLIP_LIMIT) {
       *switched = jams_resolve(resolution);
       return *switched                         ? NULL
@@ -254,10 +277,14 @@ const char *frictions_act(struct Resolution *resolution, bool *switched) {
     }
     *switched = state.mode == 0.0 && stick_again(resolution);
     if (*switched) return NULL;
-    switch_friction(resolution, i, mode);
+    friction_switch(resolution, i, mode);
     *switched = true;
   }
   return NULL;
+}
+
+const char *frictions_act(struct Resolution *resolution, bool *switched) {
+  return frictions_act_beside(resolution, false, switched);
 }
 
 void frictions_release(struct Resolution *resolution) {
@@ -272,11 +299,7 @@ void frictions_release(struct Resolution *resolution) {
 
 /* Returns the number of active constraints that depend on others; SIZE_MAX if that cannot be determined. */
 static size_t count_redundant(struct Resolution *resolution) {
-  struct Instance *instance = resolution->instance;
-  if (evaluate_prepare(instance) != STATUS_DONE) return SIZE_MAX;
-  struct Point point = solver_point(instance, resolution->time, resolution->state);
-  instance->singular = lagrangian.constraints.correct_velocities(&point, resolution->correction);
-  if (instance->singular != 0) return SIZE_MAX;
+  if (!resolution_find_correction(resolution)) return SIZE_MAX;
   const double *pivot = resolution->correction + lagrangian.coordinate_count + lagrangian.constraints.count;
   size_t count = 0;
   for (size_t j = 0; j < lagrangian.constraints.count; j++) count += isinf(pivot[j]) && resolution_moves(resolution, j);

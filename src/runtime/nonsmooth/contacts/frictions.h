@@ -9,6 +9,9 @@ const char *frictions_act(struct Resolution *resolution, bool *again);
 bool frictions_report(struct Resolution *resolution, bool *again);
 const char *frictions_check(struct Resolution *resolution);
 
+/* The same, but those that are overcome stay as they are if keeps_overcome: their forces are found with others. */
+const char *frictions_act_beside(struct Resolution *resolution, bool keeps_overcome, bool *again);
+
 /*
  * Sets *is_constrained if other constraints fix the velocity, in a plane both velocities, of a friction that counts as
  * sliding. False if that cannot be determined.
@@ -26,6 +29,12 @@ void frictions_report_missing(const struct Resolution *resolution, const char *m
  * that keeps switching by that force; branch_count if accelerations do not exist.
  */
 bool frictions_explain_jam(struct Resolution *resolution, size_t branch);
+
+/* True if a friction along a line sticks, and needs more than its stiction. */
+bool friction_is_overcome(const struct Resolution *resolution, size_t friction);
+
+/* Sets the mode of a friction along a line. Leaving rest, it acts with its stiction as long as others hold it. */
+void friction_switch(struct Resolution *resolution, size_t friction, double mode);
 
 /* Lets frictions slide that stick although a new parameter or state gives them a velocity. */
 void frictions_release(struct Resolution *resolution);

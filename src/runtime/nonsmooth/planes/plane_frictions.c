@@ -38,7 +38,7 @@ static bool is_sliding_otherwise(const struct Resolution *resolution, const stru
   if (state->is_first && (resolution->occasion == AT_START || state->has_slowed)) return true;
   if (state->is_first && state->has_sped && state->mode != PLANE_SLIDES) return true;
   if (plane_has_direction(state)) return state->ahead <= -state->lower || state->aside >= state->upper;
-  if (state->mode == PLANE_CREEPS && state->speed >= state->upper) return true;
+  if (state->mode == PLANE_CREEPS && (state->speed >= state->upper || state->ahead <= 0.0)) return true;
   return state->speed <= state->lower || (state->mode == PLANE_SLIDES && state->ahead < state->upper);
 }
 
@@ -88,6 +88,16 @@ static bool change_force(struct Resolution *resolution, const struct PlaneState 
   return true;
 }
 
+/* Handles all that lose their force, or have one again. True if a mode changes. */
+static bool change_forces(struct Resolution *resolution) {
+  bool changes = false;
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    changes |= change_force(resolution, &state);
+  }
+  return changes;
+}
+
 /* Lets a friction slide with new bounds and another direction, or from rest if it has a velocity. True if it does. */
 static bool change_slide(struct Resolution *resolution, const struct PlaneState *state) {
   if (state->mode == PLANE_STICKS ? state->speed <= state->small : !is_sliding_otherwise(resolution, state))
@@ -97,22 +107,39 @@ static bool change_slide(struct Resolution *resolution, const struct PlaneState 
   return true;
 }
 
-/* Returns a friction in a plane that has switched more often than the given number; friction_count for none. */
+/* Returns a friction that has switched more often than the given number; friction_count for none. */
 static size_t find_flipping(const struct Resolution *resolution, double often) {
   const struct SwitchTable *switches = resolution->switches;
-  for (size_t i = 0; i < switches->plane_count; i++)
-    if (resolution->flips[friction_indicator(switches, switches->planes[i].along)] > often)
-      return switches->planes[i].along;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (resolution->flips[friction_indicator(switches, i)] > often) return i;
   return switches->friction_count;
 }
 
+/* True if a friction in a plane rests. */
+static bool any_rests(const struct Resolution *resolution) {
+  bool any = false;
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    any |= state.mode == PLANE_STICKS && !state.is_given;
+  }
+  return any;
+}
+
+static bool any_is_overcome(const struct Resolution *resolution) {
+  bool any = false;
+  for (size_t i = 0; i < resolution->switches->friction_count; i++)
+    any |= !is_in_plane(resolution->switches, i) && !resolution->switches->frictions[i].is_given &&
+           friction_is_overcome(resolution, i);
+  return any;
+}
+
 static const char *act_on_planes(struct Resolution *resolution, bool *again) {
-  bool resolves = false;
+  bool resolves = any_rests(resolution) && any_is_overcome(resolution);
   *again = false;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    if (state.mode == PLANE_IS_FREE || !state.has_force) *again |= change_force(resolution, &state);
-    else if (state.is_given) *again |= follow_given(resolution, &state);
+    if (state.mode == PLANE_IS_FREE) continue;
+    if (state.is_given) *again |= follow_given(resolution, &state);
     else if (plane_is_stopping(resolution, &state) || plane_is_overcome(resolution, &state) ||
              slips_otherwise(resolution, &state) || plane_is_unheld(resolution, &state))
       resolves = true;
@@ -125,7 +152,9 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
 }
 
 static const char *act(struct Resolution *resolution, bool *again) {
-  const char *problem = frictions_act(resolution, again);
+  const char *problem = NULL;
+  *again = change_forces(resolution);
+  if (!*again) problem = frictions_act_beside(resolution, any_rests(resolution), again);
   bool goes_round = find_flipping(resolution, TOGETHER_LIMIT) < resolution->switches->friction_count;
   if (problem == NULL && !*again && goes_round && plane_rests_find_with_contacts(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);

@@ -13,6 +13,9 @@
 
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/frictions.h"
+#include "nonsmooth/planes/carried_forces.h"
+#include "nonsmooth/planes/lines_at_rest.h"
+#include "nonsmooth/planes/plane_stops.h"
 #include "nonsmooth/planes/rest_forces.h"
 #include "nonsmooth/tolerances.h"
 
@@ -85,6 +88,24 @@ static void choose_at_rest(struct Resolution *resolution, bool with_contacts) {
                                          : is_overcome            ? IS_OVERCOME
                                                                   : IS_AT_REST;
   }
+  lines_choose(resolution);
+}
+
+/* Lets a friction slide on whose constraint cannot stop the motion. */
+static void let_pass(struct Resolution *resolution, const struct PlaneState *state, const double *direction) {
+  *part_of_plane(resolution, state) = 0.0;
+  if (plane_moves(state)) plane_slide(resolution, state);
+  else plane_slip(resolution, state, direction);
+}
+
+/* Lets slow frictions slide on. */
+static void release_slow(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    if (*part_of_plane(resolution, &state) != IS_SLOW) continue;
+    let_pass(resolution, &state, state.velocity);
+    plane_count_switch(resolution, &state);
+  }
 }
 
 /* Lets all frictions at rest stick. False if accelerations do not exist. */
@@ -95,14 +116,15 @@ static bool try_to_stick(struct Resolution *resolution) {
     plane_stick(resolution, &state);
     plane_count_switch(resolution, &state);
   }
+  lines_stick(resolution);
   return plane_evaluate(resolution);
 }
 
-/* Projects out the velocities of frictions at rest, except those that slide. False if that fails. */
-static bool bring_to_rest(struct Resolution *resolution) {
+/* Projects out the velocities of frictions at rest, except those that slide, if the motion stops. False if that fails. */
+static bool bring_to_rest(struct Resolution *resolution, bool stops) {
   bool moves = false;
   resolution_keep_modes(resolution);
-  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+  for (size_t i = 0; i < resolution->switches->plane_count && stops; i++) {
     struct PlaneState state = plane_state(resolution, i);
     if (*part_of_plane(resolution, &state) == 0.0 || plane_slides(&state)) continue;
     plane_stick(resolution, &state);
@@ -146,7 +168,7 @@ static bool all_stick(const struct Resolution *resolution) {
     double limit = state.stiction + (part == IS_OVERCOME ? -rounding : rounding);
     all = state.needed <= limit && !continues(resolution, &state) && !plane_is_unheld(resolution, &state);
   }
-  return all;
+  return all && !lines_exceed(resolution, rounding);
 }
 
 /* Sets the contacts that take part. One that neither presses nor opens keeps its mode: others may share its force. */
@@ -173,34 +195,10 @@ static void let_slip(struct RestForces *forces, size_t row) {
 
 /* Lets frictions that do not slip stick by their constraints alone. */
 static void let_planes_rest(struct RestForces *forces) {
-  for (size_t row = forces->impulses.contact_count; row < forces->n; row += 2) {
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2) {
     struct PlaneState state = state_of_row(forces, row);
     if (!rest_slips(forces, row)) plane_stick(forces->resolution, &state);
   }
-}
-
-/*
- * Lets frictions that do not slip stick with the forces that were found, and contacts carry those that balance them. The
- * constraints of all then begin with 0, and do not redistribute what was found. False if accelerations do not exist.
- */
-static bool let_all_carry(struct RestForces *forces) {
-  struct Resolution *resolution = forces->resolution;
-  for (size_t row = forces->impulses.contact_count; row < forces->n; row += 2) {
-    if (rest_slips(forces, row)) continue;
-    struct PlaneState state = state_of_row(forces, row);
-    const double load[] = {-forces->force[row], -forces->force[row + 1]};
-    state.sliding = rest_forces_kinetic(forces, row);
-    plane_carry(resolution, &state, load);
-    plane_release(resolution, &state);
-  }
-  if (!plane_evaluate(resolution)) return false;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    if (contact_is_closed(resolution, i)) contact_carry(resolution, i, contact_force(resolution, i));
-  for (size_t row = forces->impulses.contact_count; row < forces->n; row += 2) {
-    struct PlaneState state = state_of_row(forces, row);
-    if (!rest_slips(forces, row)) plane_hold(resolution, &state);
-  }
-  return true;
 }
 
 /*
@@ -211,7 +209,7 @@ static bool let_all_carry(struct RestForces *forces) {
 static bool release_weak(struct RestForces *forces) {
   double most = largest_stiction(forces->resolution);
   bool is_determined = true;
-  for (size_t row = forces->impulses.contact_count; row < forces->n && is_determined; row += 2) {
+  for (size_t row = forces->impulses.contact_count; row < forces->lines && is_determined; row += 2) {
     struct PlaneState state = state_of_row(forces, row);
     bool is_constrained = false;
     if (rest_slips(forces, row) || state.stiction >= weak_share * most) continue;
@@ -222,16 +220,32 @@ static bool release_weak(struct RestForces *forces) {
   return is_determined;
 }
 
+/* Lets frictions in planes slip that still are overcome, as within rounding of the load that all hold together. */
+static bool let_overcome_slip(struct RestForces *forces) {
+  bool any = false;
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2) {
+    struct PlaneState state = state_of_row(forces, row);
+    if (state.mode != PLANE_STICKS || !(state.needed > state.stiction) ||
+        !plane_is_overcome(forces->resolution, &state))
+      continue;
+    const double against[] = {state.force[0], state.force[1]};
+    plane_slip(forces->resolution, &state, against);
+    any = true;
+  }
+  return !any || plane_evaluate(forces->resolution);
+}
+
 /* Sets the modes by the solution. False if accelerations do not exist. */
 static bool take_rests(struct RestForces *forces) {
   take_contacts(forces);
-  for (size_t row = forces->impulses.contact_count; row < forces->n; row += 2)
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2)
     if (rest_slips(forces, row)) let_slip(forces, row);
   let_planes_rest(forces);
+  lines_take(forces);
   if (!plane_evaluate(forces->resolution)) return false;
   bool has_contacts = forces->impulses.contact_count > 0;
   if (!has_contacts && all_stick(forces->resolution)) return true;
-  return let_all_carry(forces) && release_weak(forces);
+  return carried_forces_take(forces) && lines_act(forces) && let_overcome_slip(forces) && release_weak(forces);
 }
 
 /* Lets frictions without kinetic friction slip if they need more than their stiction. */
@@ -253,10 +267,7 @@ static void release_passing(struct Resolution *resolution) {
     double *part = part_of_plane(resolution, &state);
     bool passes = continues(resolution, &state);
     bool is_hopeless = *part == IS_SLOW && state.needed > hopeless * state.stiction;
-    if (*part == 0.0 || !(passes || is_hopeless)) continue;
-    *part = 0.0;
-    if (plane_moves(&state)) plane_slide(resolution, &state);
-    else plane_slip(resolution, &state, passes ? state.rate : state.force);
+    if (*part != 0.0 && (passes || is_hopeless)) let_pass(resolution, &state, passes ? state.rate : state.force);
   }
 }
 
@@ -271,16 +282,20 @@ static bool find_slips(struct Resolution *resolution) {
 }
 
 bool plane_rests_find(struct Resolution *resolution) {
+  bool stops;
   choose_at_rest(resolution, false);
+  if (!plane_stops_motion(resolution, &stops)) return false;
+  if (!stops) release_slow(resolution);
   if (!try_to_stick(resolution)) return false;
-  if (all_stick(resolution)) return bring_to_rest(resolution);
+  if (all_stick(resolution)) return bring_to_rest(resolution, stops);
   release_passing(resolution);
-  return find_slips(resolution) && bring_to_rest(resolution);
+  return find_slips(resolution) && bring_to_rest(resolution, stops);
 }
 
 bool plane_rests_find_with_contacts(struct Resolution *resolution) {
+  bool stops;
   if (resolution->has_found_forces) return false;
   resolution->has_found_forces = true;
   choose_at_rest(resolution, true);
-  return find_slips(resolution) && bring_to_rest(resolution);
+  return plane_stops_motion(resolution, &stops) && find_slips(resolution) && bring_to_rest(resolution, stops);
 }

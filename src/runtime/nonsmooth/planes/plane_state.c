@@ -12,6 +12,12 @@ static const double slow_share = 10.0;
 static const double least_tolerance = 1e-11, least_tolerance_in_exchange = 1e-6;
 /* A slow friction that cannot stick is tried again at this fraction of its speed. */
 static const double slower_share = 0.1;
+/*
+ * The solver of an importer starts anew as the speed grows by this factor, until it is `fast` small speeds. The rates by
+ * friction are like 1 / speed. A solver that keeps the Jacobian of a lower speed, as CVODE does, makes too small steps
+ * of Newton's method, and takes them for converged. Its error grows to several percent.
+ */
+static const double faster_factor = 10.0, fast = 1e4;
 
 /* Slip directions whose length differs from 1 by less are unit vectors up to rounding. */
 static const double least_part = 1e-9;
@@ -62,8 +68,7 @@ struct PlaneState plane_state(const struct Resolution *resolution, size_t plane)
   state.none = no_share * unit;
   state.has_slowed = is_hit(resolution, friction_indicator(switches, metadata->along));
   state.has_sped = is_hit(resolution, friction_indicator(switches, metadata->along + 1));
-  bool may_have_reversed =
-      state.mode == PLANE_SLIDES && importer_integrates(resolution->instance) && !resolution->jumped;
+  bool may_have_reversed = plane_slides(&state) && importer_integrates(resolution->instance) && !resolution->jumped;
   state.has_reversed = may_have_reversed && state.aside < -slope_back * state.ahead;
   state.is_given = switches->frictions[metadata->along].is_given;
   state.is_first = resolution->flips[friction_indicator(switches, metadata->along)] == 0.0;
@@ -100,7 +105,7 @@ void plane_hold(struct Resolution *resolution, const struct PlaneState *state) {
 void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]) {
   plane_hold(resolution, state);
   for (int i = 0; i < 2; i++) {
-    double share = force[i] != 0.0 ? force[i] / state->sliding : 0.0;
+    double share = state->sliding > 0.0 ? force[i] / state->sliding : 0.0;
     resolution_set_mode(resolution, state->metadata->slip_direction[i], share);
   }
 }
@@ -130,12 +135,14 @@ static void set_slip_direction(struct Resolution *resolution, const struct Plane
 }
 
 void plane_slide(struct Resolution *resolution, const struct PlaneState *state) {
-  double slower = fmax(slower_share * state->speed, state->none);
+  bool is_small = state->speed <= 2.0 * state->small, is_integrated = importer_integrates(resolution->instance);
+  double lower = is_small ? fmax(slower_share * state->speed, state->none) : state->small;
   set_slip_direction(resolution, state, state->velocity);
+  if (is_integrated && !is_small && state->speed < fast * state->small)
+    set_plane_mode(resolution, state, PLANE_CREEPS, lower, faster_factor * state->speed);
+  else if (is_small) set_plane_mode(resolution, state, PLANE_CREEPS, lower, 4.0 * state->small);
   /* The velocity turns by 90 degrees from the slip direction as an importer steps over rest: it must not miss that. */
-  double backwards = importer_integrates(resolution->instance) ? 0.0 : -unreached;
-  if (state->speed > 2.0 * state->small) set_plane_mode(resolution, state, PLANE_SLIDES, state->small, backwards);
-  else set_plane_mode(resolution, state, PLANE_CREEPS, slower, 4.0 * state->small);
+  else set_plane_mode(resolution, state, PLANE_SLIDES, lower, is_integrated ? 0.0 : -unreached);
 }
 
 void plane_free(struct Resolution *resolution, const struct PlaneState *state) {

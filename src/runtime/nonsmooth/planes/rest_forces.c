@@ -1,5 +1,5 @@
 /*
- * Forces of frictions in planes at rest, and of contacts at rest. With the accelerations a they fulfil the law of
+ * Forces of frictions at rest, and of contacts at rest. With the accelerations a they fulfil the law of
  * cone_search.c; the force T of a friction fulfils
  *
  *   |T| <= limit,  and  a = 0 or T = -limit a / |a|.
@@ -51,15 +51,17 @@ static size_t friction_of_row(const struct RestForces *forces, size_t row) {
 }
 
 /* True if the force of a friction at rest is unknown: it has kinetic friction, in units of which it is found. */
-static bool has_unknown_force(const struct Resolution *resolution, const struct PlaneState *state) {
-  return *part_of_plane(resolution, state) != 0.0 && state->sliding > 0.0;
+static bool has_unknown_force(const struct Resolution *resolution, size_t friction) {
+  double sliding = resolution->value[friction_slot(resolution->switches, friction, FRICTION_FORCE)];
+  return *part_of_friction(resolution, friction) != 0.0 && sliding > 0.0;
 }
 
 static size_t lay_out_forces(struct RestForces *forces, void *block) {
   size_t n = forces->n, frictions = forces->impulses.friction_count;
   struct Arena arena = {(uintptr_t)block};
   ARENA_NUMBERS(&arena, n * n, &forces->impulses.delassus);
-  ARENA_NUMBERS(&arena, n, &forces->free, &forces->force, &forces->behind);
+  ARENA_NUMBERS(&arena, n, &forces->free, &forces->force, &forces->behind, &forces->load);
+  ARENA_NUMBERS(&arena, 3 * n, &forces->missing);
   ARENA_NUMBERS(&arena, frictions * n, &forces->impulses.coefficient, &forces->stiction, &forces->kinetic);
   ARENA_NUMBERS(&arena, frictions, &forces->impulses.given, &forces->given_stiction, &forces->given_kinetic,
                 &forces->slips);
@@ -71,13 +73,14 @@ static size_t lay_out_forces(struct RestForces *forces, void *block) {
 static bool create_forces(struct RestForces *forces) {
   struct Resolution *resolution = forces->resolution;
   const struct SwitchTable *switches = resolution->switches;
-  size_t contacts = 0, frictions = 0;
+  size_t contacts = 0, planes = 0, lines = 0;
   for (size_t i = 0; i < switches->contact_count; i++) contacts += resolution->takes_part[i] != 0.0 ? 1 : 0;
-  for (size_t i = 0; i < switches->plane_count; i++) {
-    struct PlaneState state = plane_state(resolution, i);
-    frictions += has_unknown_force(resolution, &state) ? 2 : 0;
-  }
-  size_t n = forces->n = contacts + frictions;
+  for (size_t i = 0; i < switches->plane_count; i++)
+    planes += has_unknown_force(resolution, switches->planes[i].along) ? 2 : 0;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    lines += !is_in_plane(switches, i) && has_unknown_force(resolution, i) ? 1 : 0;
+  forces->lines = contacts + planes;
+  size_t n = forces->n = contacts + planes + lines, frictions = planes + lines;
   forces->impulses =
       (struct ContactImpulses){.contact_count = contacts, .friction_count = frictions, .count = n, .deciding_count = n};
   void *block = scratch_take(resolution->instance, SCRATCH_RESTS, lay_out_forces(forces, NULL));
@@ -90,10 +93,12 @@ static bool create_forces(struct RestForces *forces) {
   for (size_t i = 0; i < switches->contact_count; i++)
     if (resolution->takes_part[i] != 0.0) forces->impulses.member[row++] = i;
   for (size_t i = 0; i < switches->plane_count; i++) {
-    struct PlaneState state = plane_state(resolution, i);
-    if (!has_unknown_force(resolution, &state)) continue;
-    for (size_t side = 0; side < 2; side++) forces->impulses.member[row++] = state.metadata->along + side;
+    size_t along = switches->planes[i].along;
+    if (!has_unknown_force(resolution, along)) continue;
+    for (size_t side = 0; side < 2; side++) forces->impulses.member[row++] = along + side;
   }
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (!is_in_plane(switches, i) && has_unknown_force(resolution, i)) forces->impulses.member[row++] = i;
   return true;
 }
 
@@ -118,20 +123,31 @@ static double limit_of_row(const struct RestForces *forces, size_t row, size_t k
   return forces->resolution->value[friction_slot(forces->resolution->switches, forces->impulses.member[row], kind)];
 }
 
-/* Changes the force of a row by a share of its unit: that of a friction is its kinetic one, against its direction. */
-static void set_share(const struct RestForces *forces, size_t row, double share) {
-  size_t member = forces->impulses.member[row];
-  if (row_is_of_contact(forces, row)) {
-    contact_press(forces->resolution, member, (1.0 + share) * forces->pressure);
-    return;
-  }
-  struct PlaneState state = state_of_row(forces, row);
-  resolution_set_mode(forces->resolution, state.metadata->slip_direction[member - state.metadata->along], share);
+static bool row_is_of_line(const struct RestForces *forces, size_t row) {
+  return row >= forces->lines;
 }
 
-/* Returns the unit of a row in the last evaluation. */
-static double unit_of_row(const struct RestForces *forces, size_t row) {
-  return row_is_of_contact(forces, row) ? forces->pressure : -limit_of_row(forces, row, FRICTION_FORCE);
+/*
+ * Lets the force of a row change by a share of its unit. That of a friction is its kinetic one, against its direction;
+ * one along a line slides forwards meanwhile, with its force.
+ */
+static void set_share(const struct RestForces *forces, size_t row, double share) {
+  struct Resolution *resolution = forces->resolution;
+  size_t member = forces->impulses.member[row];
+  if (row_is_of_contact(forces, row)) contact_press(resolution, member, (1.0 + share) * forces->pressure);
+  else if (row_is_of_line(forces, row)) {
+    resolution_set_mode(resolution, resolution->switches->frictions[member].mode, 1.0 + share);
+    resolution_set_mode(resolution, resolution->switches->frictions[member].reported, 1.0);
+  } else {
+    struct PlaneState state = state_of_row(forces, row);
+    resolution_set_mode(resolution, state.metadata->slip_direction[member - state.metadata->along], share);
+  }
+}
+
+/* Returns the force of a row in the last evaluation, with this share. */
+static double force_with_share(const struct RestForces *forces, size_t row, double share) {
+  if (row_is_of_contact(forces, row)) return (1.0 + share) * forces->pressure;
+  return -(row_is_of_line(forces, row) ? 1.0 + share : share) * limit_of_row(forces, row, FRICTION_FORCE);
 }
 
 /* Returns the acceleration of a row in the last evaluation. */
@@ -141,42 +157,67 @@ static double acceleration_of_row(const struct RestForces *forces, size_t row) {
   return forces->resolution->value[friction_slot(forces->resolution->switches, member, FRICTION_RATE)];
 }
 
-/* Fills the derivatives by the force of one row. False if accelerations do not exist. */
+/* Returns the share at which the functions are read first: contacts press, and frictions along lines slide. */
+static double first_force(const struct RestForces *forces, size_t row) {
+  if (row_is_of_contact(forces, row)) return forces->pressure;
+  return row_is_of_line(forces, row) ? -forces->given_kinetic[friction_of_row(forces, row)] : 0.0;
+}
+
+/* Adds share times the effect of a unit force in a column to the functions in another column, or to those without forces. */
+static void add_effect(struct RestForces *forces, size_t of, double share, double *acceleration, double *stiction,
+                       double *kinetic, size_t stride) {
+  size_t n = forces->n;
+  for (size_t row = 0; row < n; row++) {
+    acceleration[row * stride] += share * forces->impulses.delassus[row * n + of];
+    if (row_is_of_contact(forces, row)) continue;
+    size_t friction = friction_of_row(forces, row);
+    stiction[friction * stride] += share * forces->stiction[friction * n + of];
+    kinetic[friction * stride] += share * forces->kinetic[friction * n + of];
+  }
+}
+
+/*
+ * Fills the derivatives by the force of one row. Frictions along lines change theirs, too, if these follow from contacts;
+ * their columns are filled first. False if accelerations do not exist.
+ */
 static bool fill_column(struct RestForces *forces, size_t column) {
   size_t n = forces->n;
+  double *acceleration = forces->impulses.delassus + column, *stiction = forces->stiction + column,
+         *kinetic = forces->kinetic + column;
   set_share(forces, column, trial_share);
   bool exist = plane_evaluate(forces->resolution);
-  double force = exist ? trial_share * unit_of_row(forces, column) : 0.0;
+  double force = exist ? force_with_share(forces, column, trial_share) - first_force(forces, column) : 0.0;
   for (size_t row = 0; row < n && force != 0.0; row++) {
-    forces->impulses.delassus[row * n + column] = (acceleration_of_row(forces, row) - forces->free[row]) / force;
+    acceleration[row * n] = (acceleration_of_row(forces, row) - forces->free[row]) / force;
     if (row_is_of_contact(forces, row)) continue;
-    size_t friction = friction_of_row(forces, row), element = friction * n + column;
-    forces->stiction[element] =
-        (limit_of_row(forces, row, FRICTION_STICTION) - forces->given_stiction[friction]) / force;
-    forces->kinetic[element] = (limit_of_row(forces, row, FRICTION_FORCE) - forces->given_kinetic[friction]) / force;
+    size_t friction = friction_of_row(forces, row);
+    stiction[friction * n] = (limit_of_row(forces, row, FRICTION_STICTION) - forces->given_stiction[friction]) / force;
+    kinetic[friction * n] = (limit_of_row(forces, row, FRICTION_FORCE) - forces->given_kinetic[friction]) / force;
+  }
+  for (size_t line = forces->lines; line < n && force != 0.0 && !row_is_of_line(forces, column); line++) {
+    double change = force_with_share(forces, line, 0.0) - first_force(forces, line);
+    add_effect(forces, line, -change / force, acceleration, stiction, kinetic, n);
   }
   set_share(forces, column, 0.0);
   return exist;
 }
 
-/* Subtracts the effect of the pressure on the contacts. */
-static void subtract_pressure(struct RestForces *forces) {
-  size_t n = forces->n;
-  for (size_t row = 0; row < n; row++)
-    for (size_t j = 0; j < forces->impulses.contact_count; j++) {
-      forces->free[row] -= forces->impulses.delassus[row * n + j] * forces->pressure;
-      if (row_is_of_contact(forces, row)) continue;
-      size_t friction = friction_of_row(forces, row);
-      forces->given_stiction[friction] -= forces->stiction[friction * n + j] * forces->pressure;
-      forces->given_kinetic[friction] -= forces->kinetic[friction * n + j] * forces->pressure;
-    }
+/* Subtracts the effect of the forces with which the functions were read first. */
+static void subtract_first_forces(struct RestForces *forces) {
+  double *first = forces->missing;
+  for (size_t row = 0; row < forces->n; row++) first[row] = first_force(forces, row);
+  for (size_t row = 0; row < forces->n; row++)
+    if (first[row] != 0.0)
+      add_effect(forces, row, -first[row], forces->free, forces->given_stiction, forces->given_kinetic, 1);
 }
 
 /* Reads the linear functions. False if accelerations do not exist. */
 static bool fill_functions(struct RestForces *forces) {
   for (size_t row = forces->impulses.contact_count; row < forces->n; row++) {
-    struct PlaneState state = state_of_row(forces, row);
-    plane_release(forces->resolution, &state);
+    if (!row_is_of_line(forces, row)) {
+      struct PlaneState state = state_of_row(forces, row);
+      plane_release(forces->resolution, &state);
+    }
     set_share(forces, row, 0.0);
   }
   bool exist = plane_evaluate(forces->resolution);
@@ -186,8 +227,8 @@ static bool fill_functions(struct RestForces *forces) {
     forces->given_stiction[friction_of_row(forces, row)] = limit_of_row(forces, row, FRICTION_STICTION);
     forces->given_kinetic[friction_of_row(forces, row)] = limit_of_row(forces, row, FRICTION_FORCE);
   }
-  for (size_t column = 0; column < forces->n && exist; column++) exist = fill_column(forces, column);
-  subtract_pressure(forces);
+  for (size_t column = forces->n; column-- > 0 && exist;) exist = fill_column(forces, column);
+  subtract_first_forces(forces);
   return exist;
 }
 
@@ -209,32 +250,34 @@ static double limit_at(const struct RestForces *forces, size_t row, const double
   return limit;
 }
 
-/* True if a friction accelerates by the solution. */
-static bool accelerates(const struct RestForces *forces, size_t row) {
-  return hypot(forces->behind[row], forces->behind[row + 1]) > forces->none;
+static size_t rows_of_friction(const struct RestForces *forces, size_t row) {
+  return row_is_of_line(forces, row) ? 1 : 2;
+}
+
+/* Returns the length of the vector of a friction. */
+static double length_of(const struct RestForces *forces, size_t row, const double *vector) {
+  return row_is_of_line(forces, row) ? fabs(vector[row]) : hypot(vector[row], vector[row + 1]);
 }
 
 /* True if a friction accelerates by the solution, or was overcome and is at its limit. */
 static bool begins_to_slip(const struct RestForces *forces, size_t row) {
-  struct PlaneState state = state_of_row(forces, row);
-  if (accelerates(forces, row)) return true;
-  if (*part_of_plane(forces->resolution, &state) != IS_OVERCOME) return false;
+  if (length_of(forces, row, forces->behind) > forces->none) return true;
+  if (*part_of_friction(forces->resolution, forces->impulses.member[row]) != IS_OVERCOME) return false;
   double limit = limit_at(forces, row, forces->impulses.given, forces->impulses.coefficient);
   double rounding = share_at_limit * largest_stiction(forces->resolution),
          response = forces->impulses.delassus[row * (forces->n + 1)];
   double least = (1.0 - least_margin) * limit - rounding - (response > 0.0 ? forces->none / response : 0.0);
-  return hypot(forces->force[row], forces->force[row + 1]) >= least;
+  return length_of(forces, row, forces->force) >= least;
 }
 
 /* Marks the frictions that slip, which have their kinetic limit. True if a limit falls. */
 static bool lower_limits(struct RestForces *forces) {
   bool falls = false;
-  for (size_t row = forces->impulses.contact_count; row < forces->n; row += 2) {
+  for (size_t row = forces->impulses.contact_count; row < forces->n; row += rows_of_friction(forces, row)) {
     if (rest_slips(forces, row) || !begins_to_slip(forces, row)) continue;
     falls |= limit_at(forces, row, forces->given_stiction, forces->stiction) >
              (1.0 + share_at_limit) * limit_at(forces, row, forces->given_kinetic, forces->kinetic);
-    size_t friction = friction_of_row(forces, row);
-    forces->slips[friction] = forces->slips[friction + 1] = 1.0;
+    for (size_t i = 0; i < rows_of_friction(forces, row); i++) forces->slips[friction_of_row(forces, row) + i] = 1.0;
   }
   return falls;
 }

@@ -1,4 +1,4 @@
-/* Forces of frictions in planes at rest, and of the contacts that take part, all at once. */
+/* Forces of frictions at rest, and of the contacts that take part, all at once. */
 #pragma once
 
 #include "nonsmooth/cones/impulses.h"
@@ -17,28 +17,33 @@ enum { IS_AT_REST = 1, IS_OVERCOME = 2, IS_SLOW = 3 };
 enum { WAS_CLOSED = 1, WAS_OPEN = 2 };
 
 /*
- * The unknown forces: a row for each contact, two for each friction. The arrays of frictions have an element, or a row
- * of n, for each of their rows.
+ * The unknown forces: a row for each contact, two for each friction in a plane, one for each along a line. The arrays of
+ * frictions have an element, or a row of n, for each of their rows.
  */
 struct RestForces {
   struct Resolution *resolution;
   struct ContactImpulses impulses;   /* derivatives of a; the limits, which are kinetic ones if the friction slips */
-  size_t n;                          /* number of rows */
+  size_t n, lines;                   /* number of rows; the first row of a friction along a line */
   double pressure;                   /* force of each contact, in N, around which the functions are read */
   double *free;                      /* a without forces */
   double *force, *behind;            /* the forces, and a with them */
   double *stiction, *given_stiction; /* derivatives of the stiction, and stiction without forces */
   double *kinetic, *given_kinetic;   /* the same for the kinetic friction */
+  double *load, *missing;            /* of carried_forces.c: n, and 3 n */
   double *slips;                     /* 1 if the friction slips: its limit is the kinetic friction */
   double none;                       /* accelerations that count as 0 */
 };
 
 /* Returns the element of takes_part of a friction. */
-static inline double *part_of_plane(const struct Resolution *resolution, const struct PlaneState *state) {
-  return &resolution->takes_part[resolution->switches->contact_count + state->metadata->along];
+static inline double *part_of_friction(const struct Resolution *resolution, size_t friction) {
+  return &resolution->takes_part[resolution->switches->contact_count + friction];
 }
 
-/* Returns the state of the friction of a row. */
+static inline double *part_of_plane(const struct Resolution *resolution, const struct PlaneState *state) {
+  return part_of_friction(resolution, state->metadata->along);
+}
+
+/* Returns the state of the friction in a plane of a row. */
 static inline struct PlaneState state_of_row(const struct RestForces *forces, size_t row) {
   const struct Resolution *resolution = forces->resolution;
   return plane_state(resolution, plane_of(resolution->switches, forces->impulses.member[row]));

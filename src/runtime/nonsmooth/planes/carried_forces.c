@@ -1,0 +1,102 @@
+/*
+ * Frictions in planes and contacts can carry a given force beside that of their constraint. A <constraint>, and a
+ * friction along a line, cannot. Where one holds the same bodies, as a rod does, it takes a part of what was found.
+ * For the norm of all constraint forces is least. So the frictions carry other loads c, with which their
+ * forces f are as found. With the orthogonal projector P onto the forces that share a load,
+ *
+ *   f(c) = f(0) + (1 - P) c.
+ *
+ * The matrix is symmetric and positive semidefinite, and need not be known. The method of conjugate gradients needs one
+ * evaluation of the accelerations a step, and at most as many steps as there are rows (M. R. Hestenes, E. Stiefel:
+ * Methods of conjugate gradients for solving linear systems, Journal of Research of the NBS 49, 1952).
+ */
+#include "nonsmooth/planes/carried_forces.h"
+
+#include <math.h>
+
+#include "nonsmooth/contacts/contact_impulses.h"
+
+/* Lets the friction of a row stick with its load. */
+static void carry(struct RestForces *forces, size_t row) {
+  struct PlaneState state = state_of_row(forces, row);
+  state.sliding = rest_forces_kinetic(forces, row);
+  plane_carry(forces->resolution, &state, &forces->load[row]);
+}
+
+/* Lets the frictions carry what was found without their constraints, then the contacts what balances it. */
+static bool let_contacts_carry(struct RestForces *forces) {
+  struct Resolution *resolution = forces->resolution;
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2) {
+    if (rest_slips(forces, row)) continue;
+    for (size_t i = row; i < row + 2; i++) forces->load[i] = -forces->force[i];
+    carry(forces, row);
+    struct PlaneState state = state_of_row(forces, row);
+    plane_release(resolution, &state);
+  }
+  if (!plane_evaluate(resolution)) return false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    if (contact_is_closed(resolution, i)) contact_carry(resolution, i, contact_force(resolution, i));
+  return true;
+}
+
+/* True if closed contacts keep the forces that they carry, and frictions the limits that follow from these. */
+static bool contacts_keep(const struct Resolution *resolution) {
+  double rounding = share_at_limit * largest_contact_force(resolution);
+  bool keep = true;
+  for (size_t i = 0; i < resolution->switches->contact_count && keep; i++)
+    keep = !contact_is_closed(resolution, i) ||
+           fabs(contact_force(resolution, i) - carried_force(resolution->instance, i)) <= rounding;
+  return keep;
+}
+
+/* Evaluates the forces with the loads. Fills what they miss of those found. False if accelerations do not exist. */
+static bool find_missing(struct RestForces *forces, double *missing) {
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2)
+    if (!rest_slips(forces, row)) carry(forces, row);
+  if (!plane_evaluate(forces->resolution)) return false;
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row++) {
+    size_t side = (row - forces->impulses.contact_count) % 2;
+    struct PlaneState state = state_of_row(forces, row - side);
+    missing[row] = rest_slips(forces, row) ? 0.0 : -forces->force[row] - state.force[side];
+  }
+  return true;
+}
+
+static double product_of(const struct RestForces *forces, const double *a, const double *b) {
+  double sum = 0.0;
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row++) sum += a[row] * b[row];
+  return sum;
+}
+
+/* Adds share times b to a. */
+static void add(const struct RestForces *forces, double *a, double share, const double *b) {
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row++) a[row] += share * b[row];
+}
+
+/* Changes the loads until nothing is missing, as long as the contacts keep theirs. */
+static bool correct_loads(struct RestForces *forces) {
+  size_t n = forces->n;
+  double *missing = forces->missing, *way = missing + n, *next = way + n;
+  double rounding = share_at_limit * largest_stiction(forces->resolution);
+  if (!find_missing(forces, missing)) return false;
+  double square = product_of(forces, missing, missing);
+  for (size_t row = 0; row < n; row++) way[row] = missing[row];
+  for (size_t step = 0; step < n && sqrt(square) > rounding && contacts_keep(forces->resolution); step++) {
+    add(forces, forces->load, 1.0, way);
+    if (!find_missing(forces, next)) return false;
+    double curvature = product_of(forces, way, missing) - product_of(forces, way, next);
+    double share = curvature > 0.0 ? square / curvature : 0.0, before = square;
+    add(forces, forces->load, share - 1.0, way);
+    for (size_t row = forces->impulses.contact_count; row < forces->lines; row++)
+      missing[row] += share * (next[row] - missing[row]);
+    square = product_of(forces, missing, missing);
+    for (size_t row = forces->impulses.contact_count; row < forces->lines; row++)
+      way[row] = missing[row] + square / before * way[row];
+    if (share == 0.0) break;
+  }
+  return find_missing(forces, missing);
+}
+
+bool carried_forces_take(struct RestForces *forces) {
+  return let_contacts_carry(forces) && correct_loads(forces);
+}

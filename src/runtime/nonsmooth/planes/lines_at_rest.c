@@ -1,0 +1,78 @@
+#include "nonsmooth/planes/lines_at_rest.h"
+
+#include <math.h>
+
+#include "nonsmooth/contacts/contact_impulses.h"
+#include "nonsmooth/contacts/frictions.h"
+
+/*
+ * True if a friction along a line rests: it sticks, or acts at rest with its limit. Its force has a part in that of those
+ * in planes, unless its limits differ by direction.
+ */
+static bool line_rests(const struct Resolution *resolution, size_t friction) {
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
+  bool is_symmetric =
+      value[FRICTION_STICTION] == value[FRICTION_STICTION_BACK] && value[FRICTION_FORCE] == value[FRICTION_FORCE_BACK];
+  bool rests = mode_of(resolution, metadata->mode) == 0.0 || mode_of(resolution, metadata->reported) == 0.0;
+  return rests && is_symmetric && !metadata->is_given && !is_in_plane(resolution->switches, friction);
+}
+
+void lines_choose(const struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) {
+    if (is_in_plane(resolution->switches, i)) continue;
+    bool rests = line_rests(resolution, i);
+    *part_of_friction(resolution, i) = rests && friction_is_overcome(resolution, i) ? IS_OVERCOME
+                                       : rests                                      ? IS_AT_REST
+                                                                                    : 0.0;
+  }
+}
+
+void lines_stick(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) {
+    if (is_in_plane(resolution->switches, i) || *part_of_friction(resolution, i) == 0.0) continue;
+    if (*part_of_friction(resolution, i) == IS_OVERCOME)
+      resolution->flips[friction_indicator(resolution->switches, i)]++;
+    resolution_set_mode(resolution, resolution->switches->frictions[i].mode, 0.0);
+  }
+}
+
+/* True if a friction along a line that sticks needs more than its stiction. */
+static bool line_exceeds(const struct Resolution *resolution, size_t friction, double rounding) {
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  double part = *part_of_friction(resolution, friction);
+  if (is_in_plane(resolution->switches, friction) || part == 0.0 || !friction_sticks(resolution, friction))
+    return false;
+  double stiction = resolution->value[friction_slot(resolution->switches, friction, FRICTION_STICTION)];
+  double force = resolution->acceleration[lagrangian.coordinate_count + metadata->constraint];
+  return fabs(force) > stiction + (part == IS_OVERCOME ? -rounding : rounding);
+}
+
+bool lines_exceed(const struct Resolution *resolution, double rounding) {
+  bool any = false;
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) any |= line_exceeds(resolution, i, rounding);
+  return any;
+}
+
+void lines_take(struct RestForces *forces) {
+  for (size_t row = forces->lines; row < forces->n; row++) {
+    double against = forces->force[row] != 0.0 ? -forces->force[row] : forces->behind[row];
+    double mode = !rest_slips(forces, row) ? 0.0 : against < 0.0 ? -1.0 : 1.0;
+    friction_switch(forces->resolution, forces->impulses.member[row], mode);
+  }
+}
+
+bool lines_act(struct RestForces *forces) {
+  struct Resolution *resolution = forces->resolution;
+  double rounding = share_at_limit * largest_stiction(resolution);
+  for (size_t row = forces->lines; row < forces->n;) {
+    size_t friction = forces->impulses.member[row++];
+    if (!line_exceeds(resolution, friction, rounding)) continue;
+    size_t constraint = resolution->switches->frictions[friction].constraint;
+    double force = resolution->acceleration[lagrangian.coordinate_count + constraint];
+    friction_switch(resolution, friction, force < 0.0 ? -1.0 : 1.0);
+    if (!plane_evaluate(resolution)) return false;
+    row = forces->lines;
+  }
+  return true;
+}
