@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 
 import fmu
@@ -196,9 +197,9 @@ def test_slab_on_three_corners():
     instance.free()
 
 
-def run_pushed(name, values, time, step):
+def run_pushed(name, values, time, step, tolerance=None):
     """Simulate to a time; without the work of the push, the energy never grows."""
-    instance = fmu.Instance(name).initialize(values)
+    instance = fmu.Instance(name).initialize(values, tolerance)
     energies = [instance.get("totalEnergy")]
     while instance.time < time - 1e-9:
         instance.step(step)
@@ -228,6 +229,23 @@ def test_box_at_walls(name, draw, time):
 def test_pushed_table(mu, rate, direction, off, time):
     """It tips over two feet, whose frictions hold it, as the forces of the other two vanish at the same time; then it slips."""
     run_pushed("TableOnFour", {"mu": mu, "rate": rate, "dir": direction, "off": off}, time, 0.12)
+
+
+@pytest.mark.parametrize("draw, tolerance, time", [(1, 1e-6, 4.0), (7, 1e-6, 1.2), (23, 1e-4, 4.0)])
+def test_table_turns_about_a_foot(draw, tolerance, time):
+    """Feet lift, have no friction, and slide as they close again beside one that begins to slip. A foot that is lifted makes no events."""
+    draws = np.random.default_rng(draw)
+    values = {name: draws.uniform(*bounds) for name, bounds in {"mu": (0.1, 1.5), "rate": (2, 20), "dir": (0, 6.28), "off": (-0.3, 0.3)}.items()}
+    run_pushed("TableOnSix", values, time, 0.2, tolerance)
+
+
+@pytest.mark.parametrize("name, draw, tolerance", [("BoxAtWall", 10, 1e-6), ("BoxAtWall", 25, 1e-6), ("BoxInCorner", 0, 1e-8)])
+def test_box_without_margin(name, draw, tolerance):
+    """A corner at its friction limit, which a wall unloads for a moment, has no margin left: the forces are found again."""
+    draws = np.random.default_rng(draw)
+    bounds = {"Fx": (-8, 4), "Fy": (-8, 4), "Fz": (-3, 2), "height": (-0.05, 0.1), "avx": (-1, 0.3), "avy": (-1, 0.3)}
+    values = {"mu": draws.uniform(0.05, 1), "e": draws.choice([0, 0.5])} | {name: draws.uniform(*limits) for name, limits in bounds.items()}
+    run_pushed(name, values, 2.0, 0.1, tolerance)
 
 
 def test_feet_that_jam_each_other():
@@ -299,6 +317,24 @@ def test_pushed_column(mu, rate, direction, height):
     way = rate * (0.1 * begins) ** 3 / (6 * 2)
     places = [way * math.cos(direction), way * math.sin(direction), 0, 0]
     assert instance.get("b2x", "b2y", "b1x", "b1y") == pytest.approx(places, abs=1e-6 * way)
+    instance.free()
+
+
+def test_a_box_slides_over_the_edge_of_another():
+    """The lower one tips where the upper one's pressure and friction have more moment about its edge than its weight. Its corners rest until then."""
+    mu, rate, direction, height = 0.7234690311686371, 24.84287911740961, 2.16287443893914, -0.09103236486191624
+    begins, weight = mu * 2 * 9.81 / rate, 2 * 9.81
+
+    def overhang(time):
+        pressed = rate * (time - begins) ** 3 / (6 * 2) + rate * time * height / weight + 0.1 * mu  # ahead of the lower box's centre
+        return 2 * 0.2 + math.cos(direction) * (pressed + 0.2 * mu)
+
+    tips = brentq(overhang, begins, 2.0)
+    instance = fmu.Instance("PushedColumn").initialize({"mu": mu, "rate": rate, "dir": direction, "height": height}, 1e-8)
+    instance.step(tips - 1e-3)
+    assert instance.get("b1vx", "b1vz", "b1r2") == pytest.approx([0] * 3, abs=1e-12)
+    instance.step(2e-3)
+    assert 1e-7 < instance.get("b1vz") < 1e-4
     instance.free()
 
 

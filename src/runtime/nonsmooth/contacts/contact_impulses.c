@@ -97,8 +97,8 @@ bool let_stopped_slip(struct Resolution *resolution) {
   for (size_t i = 0; i < switches->plane_count; i++) {
     size_t along = switches->planes[i].along, velocity = friction_slot(switches, along, FRICTION_VELOCITY);
     double none = fmax(least_speed, resolution->error_bound[velocity]);
-    if (!friction_sticks(resolution, along) && !(speed_in_plane(resolution, along) > none))
-      set_friction(resolution, along, 1.0);
+    bool slides = plane_mode(resolution, &switches->planes[i]) > PLANE_STICKS;
+    if (slides && !(speed_in_plane(resolution, along) > none)) set_friction(resolution, along, 1.0);
   }
   return true;
 }

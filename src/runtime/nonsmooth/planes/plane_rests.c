@@ -41,10 +41,10 @@ static bool is_reached(const struct Resolution *resolution, const struct PlaneSt
 bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneState *state) {
   if (state->mode != PLANE_STICKS || state->speed > state->small) return false;
   if (is_reached(resolution, state)) return true;
-  if (!(state->needed > state->stiction)) return false;
-  /* Importers stop where it exceeds the stiction, however little. */
-  return resolution->occasion == IN_EXCHANGE ||
-         state->needed > state->stiction + share_at_limit * largest_stiction(resolution);
+  /* Importers stop where it exceeds the stiction, however little. One that was located there has no margin left. */
+  bool has_no_margin = state->has_slowed && !resolution->jumped;
+  double rounding = resolution->occasion == IN_EXCHANGE ? 0.0 : share_at_limit * largest_stiction(resolution);
+  return state->needed > state->stiction + (has_no_margin ? -rounding : rounding);
 }
 
 static bool any_stops(const struct Resolution *resolution) {
@@ -292,10 +292,20 @@ bool plane_rests_find(struct Resolution *resolution) {
   return find_slips(resolution) && bring_to_rest(resolution, stops);
 }
 
+/* Lets frictions slide again on open contacts that take part: they have a force where these press. */
+static void slide_on_chosen(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    bool is_free = state.mode == PLANE_IS_FREE && !state.is_given && plane_moves(&state);
+    if (is_free && rests_on_chosen(resolution, &state)) plane_slide(resolution, &state);
+  }
+}
+
 bool plane_rests_find_with_contacts(struct Resolution *resolution) {
   bool stops;
   if (resolution->has_found_forces) return false;
   resolution->has_found_forces = true;
   choose_at_rest(resolution, true);
+  slide_on_chosen(resolution);
   return plane_stops_motion(resolution, &stops) && find_slips(resolution) && bring_to_rest(resolution, stops);
 }
