@@ -30,7 +30,7 @@
 #include "nonsmooth/cones/cone_newton.h"
 #include "support/arena.h"
 
-/* Trials; without an interior path there are more. */
+/* Trials; without an interior path, or where it fails for forces, there are more. */
 enum { LAW_TRIALS = 4, LAW_TRIALS_ALONE = 12 };
 
 /* How many more sweeps each trial makes than the one before; the first one makes none. */
@@ -132,10 +132,10 @@ static bool is_accepted(struct Cones *cones, double miss) {
   return miss <= law_roughly_holds || cone_newton(cones, cones->work) <= cones->impulses->rounding;
 }
 
-/* Sweeps in turn, from no impulse. */
-static double search_in_turn(struct Cones *cones) {
+/* Sweeps from no impulse. */
+static double search_by_sweeps(struct Cones *cones, enum Sweeps kind, int trials) {
   memset(cones->swept, 0, cones->impulses->count * sizeof *cones->swept);
-  return cones_search_from(cones, IN_TURN, LAW_TRIALS);
+  return cones_search_from(cones, kind, trials);
 }
 
 bool cones_find_impulses(struct Cones *cones) {
@@ -145,13 +145,14 @@ bool cones_find_impulses(struct Cones *cones) {
   if (cones->path == NULL) return is_accepted(cones, miss);
   double other = cones->path->find(cones, law_holds, false, cones->work);
   if (!(other < miss)) memcpy(cones->impulse, cones->best, cones->impulses->count * sizeof *cones->best);
-  return is_accepted(cones, fmin(other, miss)) || is_accepted(cones, search_in_turn(cones));
+  return is_accepted(cones, fmin(other, miss)) || is_accepted(cones, search_by_sweeps(cones, IN_TURN, LAW_TRIALS));
 }
 
 double cones_find_forces(struct Cones *cones) {
   if (!cones_fill_scales(cones)) return INFINITY;
   double miss = cones->path->find(cones, law_holds, true, cones->work);
-  return miss <= law_roughly_holds ? miss : search_in_turn(cones);
+  if (miss > law_roughly_holds) miss = search_by_sweeps(cones, AT_ONCE, LAW_TRIALS_ALONE);
+  return miss <= law_roughly_holds ? miss : search_by_sweeps(cones, IN_TURN, LAW_TRIALS);
 }
 
 size_t pressing_forces_work_count(const struct ConePath *path, size_t n) {

@@ -188,9 +188,8 @@ static void take_contacts(struct RestForces *forces) {
 static void let_slip(struct RestForces *forces, size_t row) {
   const double *force = &forces->force[row], against[] = {-force[0], -force[1]};
   struct PlaneState state = state_of_row(forces, row);
-  bool has_force = hypot(force[0], force[1]) > 0.0, is_slow = *part_of_plane(forces->resolution, &state) == IS_SLOW;
-  if (is_slow && plane_moves(&state)) plane_slide(forces->resolution, &state);
-  else plane_slip(forces->resolution, &state, has_force ? against : &forces->behind[row]);
+  bool has_force = hypot(force[0], force[1]) > 0.0;
+  plane_slip(forces->resolution, &state, has_force ? against : &forces->behind[row]);
 }
 
 /* Lets frictions that do not slip stick by their constraints alone. */
@@ -253,7 +252,8 @@ static void release_others(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     bool rests = *part_of_plane(resolution, &state) != 0.0;
-    if (rests && !(state.sliding > 0.0) && state.needed > state.stiction) plane_slip(resolution, &state, state.force);
+    if (rests && !rest_is_unknown(resolution, state.metadata->along) && state.needed > state.stiction)
+      plane_slip(resolution, &state, state.force);
   }
 }
 
@@ -271,11 +271,29 @@ static void release_passing(struct Resolution *resolution) {
   }
 }
 
+/* Lets slow frictions slide on that do not stick by the solution: their directions are known. True if there are any. */
+static bool let_slow_slide(struct RestForces *forces) {
+  bool any = false;
+  for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2) {
+    struct PlaneState state = state_of_row(forces, row);
+    double *part = part_of_plane(forces->resolution, &state);
+    if (!rest_slips(forces, row) || *part != IS_SLOW || !plane_moves(&state)) continue;
+    *part = 0.0;
+    plane_slide(forces->resolution, &state);
+    any = true;
+  }
+  return any;
+}
+
 /* Finds the modes where not all can stick. False if that fails. */
 static bool find_slips(struct Resolution *resolution) {
   struct RestForces forces = {.resolution = resolution};
   release_others(resolution);
-  if (!rest_forces_find(&forces)) return false;
+  for (bool is_found = false; !is_found;) {
+    if (!rest_forces_find(&forces)) return false;
+    is_found = forces.n == 0 || !let_slow_slide(&forces);
+    if (!is_found) rest_forces_free(&forces);
+  }
   bool is_done = forces.n == 0 || take_rests(&forces);
   rest_forces_free(&forces);
   return is_done;

@@ -50,10 +50,9 @@ static size_t friction_of_row(const struct RestForces *forces, size_t row) {
   return row - forces->impulses.contact_count;
 }
 
-/* True if the force of a friction at rest is unknown: it has kinetic friction, in units of which it is found. */
-static bool has_unknown_force(const struct Resolution *resolution, size_t friction) {
+bool rest_is_unknown(const struct Resolution *resolution, size_t friction) {
   double sliding = resolution->value[friction_slot(resolution->switches, friction, FRICTION_FORCE)];
-  return *part_of_friction(resolution, friction) != 0.0 && sliding > 0.0;
+  return *part_of_friction(resolution, friction) != 0.0 && sliding != 0.0;
 }
 
 static size_t lay_out_forces(struct RestForces *forces, void *block) {
@@ -76,9 +75,9 @@ static bool create_forces(struct RestForces *forces) {
   size_t contacts = 0, planes = 0, lines = 0;
   for (size_t i = 0; i < switches->contact_count; i++) contacts += resolution->takes_part[i] != 0.0 ? 1 : 0;
   for (size_t i = 0; i < switches->plane_count; i++)
-    planes += has_unknown_force(resolution, switches->planes[i].along) ? 2 : 0;
+    planes += rest_is_unknown(resolution, switches->planes[i].along) ? 2 : 0;
   for (size_t i = 0; i < switches->friction_count; i++)
-    lines += !is_in_plane(switches, i) && has_unknown_force(resolution, i) ? 1 : 0;
+    lines += !is_in_plane(switches, i) && rest_is_unknown(resolution, i) ? 1 : 0;
   forces->lines = contacts + planes;
   size_t n = forces->n = contacts + planes + lines, frictions = planes + lines;
   forces->impulses =
@@ -94,11 +93,11 @@ static bool create_forces(struct RestForces *forces) {
     if (resolution->takes_part[i] != 0.0) forces->impulses.member[row++] = i;
   for (size_t i = 0; i < switches->plane_count; i++) {
     size_t along = switches->planes[i].along;
-    if (!has_unknown_force(resolution, along)) continue;
+    if (!rest_is_unknown(resolution, along)) continue;
     for (size_t side = 0; side < 2; side++) forces->impulses.member[row++] = along + side;
   }
   for (size_t i = 0; i < switches->friction_count; i++)
-    if (!is_in_plane(switches, i) && has_unknown_force(resolution, i)) forces->impulses.member[row++] = i;
+    if (!is_in_plane(switches, i) && rest_is_unknown(resolution, i)) forces->impulses.member[row++] = i;
   return true;
 }
 

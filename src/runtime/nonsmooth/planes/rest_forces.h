@@ -54,6 +54,12 @@ static inline bool rest_slips(const struct RestForces *forces, size_t row) {
   return forces->slips[row - forces->impulses.contact_count] != 0.0;
 }
 
+/*
+ * True if the force of a friction at rest is unknown. It is found in units of the kinetic friction, which is less than 0
+ * where its contact would have to pull so that all stick.
+ */
+bool rest_is_unknown(const struct Resolution *resolution, size_t friction);
+
 /* Returns the largest stiction of all frictions in planes. */
 double largest_stiction(const struct Resolution *resolution);
 
