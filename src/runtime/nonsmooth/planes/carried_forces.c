@@ -39,13 +39,13 @@ static bool let_contacts_carry(struct RestForces *forces) {
   return true;
 }
 
-/* True if closed contacts keep the forces that they carry, and frictions the limits that follow from these. */
-static bool contacts_keep(const struct Resolution *resolution) {
-  double rounding = share_at_limit * largest_contact_force(resolution);
+/* True if frictions that stick keep their limits: the contacts on which they rest have the forces found. */
+static bool limits_keep(const struct RestForces *forces) {
+  double rounding = share_at_limit * largest_stiction(forces->resolution);
   bool keep = true;
-  for (size_t i = 0; i < resolution->switches->contact_count && keep; i++)
-    keep = !contact_is_closed(resolution, i) ||
-           fabs(contact_force(resolution, i) - carried_force(resolution->instance, i)) <= rounding;
+  for (size_t row = forces->impulses.contact_count; row < forces->lines && keep; row += 2)
+    keep = rest_slips(forces, row) ||
+           fabs(state_of_row(forces, row).sliding - rest_forces_kinetic(forces, row)) <= rounding;
   return keep;
 }
 
@@ -73,7 +73,7 @@ static void add(const struct RestForces *forces, double *a, double share, const 
   for (size_t row = forces->impulses.contact_count; row < forces->lines; row++) a[row] += share * b[row];
 }
 
-/* Changes the loads until nothing is missing, as long as the contacts keep theirs. */
+/* Changes the loads until nothing is missing, as long as the limits stay as found. */
 static bool correct_loads(struct RestForces *forces) {
   size_t n = forces->n;
   double *missing = forces->missing, *way = missing + n, *next = way + n;
@@ -81,7 +81,7 @@ static bool correct_loads(struct RestForces *forces) {
   if (!find_missing(forces, missing)) return false;
   double square = product_of(forces, missing, missing);
   for (size_t row = 0; row < n; row++) way[row] = missing[row];
-  for (size_t step = 0; step < n && sqrt(square) > rounding && contacts_keep(forces->resolution); step++) {
+  for (size_t step = 0; step < n && sqrt(square) > rounding && limits_keep(forces); step++) {
     add(forces, forces->load, 1.0, way);
     if (!find_missing(forces, next)) return false;
     double curvature = product_of(forces, way, missing) - product_of(forces, way, next);
