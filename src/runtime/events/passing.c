@@ -15,6 +15,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -329,28 +330,6 @@ static bool is_endless(int close_events) {
   return close_events >= EVENT_LIMIT + (int)indicator_count(lagrangian.switches);
 }
 
-const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
-  double end = fmin(instance->fmu_state->last_step.end, step->end), time;
-  size_t indicator = 0;
-  progress->searched = fmax(progress->searched, instance->fmu_state->searched);
-  if (progress->searched < end) search_further(instance, step, progress);
-  bool is_found = find_next(instance, end, progress, &time, &indicator);
-  instance->fmu_state->searched = progress->searched;
-  instance->fmu_state->close_events = 0;
-  if (!is_found && end == step->end && ends_at_sample(instance, end, &indicator)) {
-    is_found = true;
-    time = end;
-  }
-  if (!is_found) return NULL;
-  if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);
-  count_event(instance, step, time, indicator, progress);
-  if (is_endless(progress->close_events) || progress->close_events_at_rest >= EVENT_LIMIT)
-    return report_zeno(instance, step, progress, indicator);
-  if (instance->stops_at_events) instance->fmu_state->close_events = progress->close_events;
-  if (!take_event_state(instance, time)) return "the state is not available at the event";
-  return pass_event(instance, step, time, indicator, progress);
-}
-
 /* Times that modes are found from one time on by looking ahead: each may let one friction slide. */
 enum { LOOK_LIMIT = 20 };
 
@@ -413,6 +392,37 @@ static bool pass_contradictions(struct Instance *instance, const struct Communic
   if (lagrangian.switches->friction_laws == NULL || instance->violated_constraint == 0) return false;
   return pass_contradiction(instance, step, last.start, progress) ||
          pass_contradiction(instance, step, last.end, progress);
+}
+
+/* True if the constraints of frictions contradict others in event_state. */
+static bool contradicts(struct Instance *instance, double time) {
+  double *state = instance->event_state + lagrangian.state_count;
+  if (lagrangian.switches->friction_laws == NULL || lagrangian.constraints.projection == NULL) return false;
+  memcpy(state, instance->event_state, lagrangian.state_count * sizeof *state);
+  return solver_project(instance, time, state) != NULL;
+}
+
+const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
+  double end = fmin(instance->fmu_state->last_step.end, step->end), time;
+  size_t indicator = 0;
+  progress->searched = fmax(progress->searched, instance->fmu_state->searched);
+  if (progress->searched < end) search_further(instance, step, progress);
+  bool is_found = find_next(instance, end, progress, &time, &indicator);
+  instance->fmu_state->searched = progress->searched;
+  instance->fmu_state->close_events = 0;
+  if (!is_found && end == step->end && ends_at_sample(instance, end, &indicator)) {
+    is_found = true;
+    time = end;
+  }
+  if (!is_found) return NULL;
+  if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);
+  count_event(instance, step, time, indicator, progress);
+  if (is_endless(progress->close_events) || progress->close_events_at_rest >= EVENT_LIMIT)
+    return report_zeno(instance, step, progress, indicator);
+  if (instance->stops_at_events) instance->fmu_state->close_events = progress->close_events;
+  if (!take_event_state(instance, time)) return "the state is not available at the event";
+  if (contradicts(instance, time) && pass_contradictions(instance, step, progress)) return NULL;
+  return pass_event(instance, step, time, indicator, progress);
 }
 
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
