@@ -39,16 +39,6 @@ static bool let_contacts_carry(struct RestForces *forces) {
   return true;
 }
 
-/* True if frictions that stick keep their limits: the contacts on which they rest have the forces found. */
-static bool limits_keep(const struct RestForces *forces) {
-  double rounding = share_at_limit * largest_stiction(forces->resolution);
-  bool keep = true;
-  for (size_t row = forces->impulses.contact_count; row < forces->lines && keep; row += 2)
-    keep = rest_slips(forces, row) ||
-           fabs(state_of_row(forces, row).sliding - rest_forces_kinetic(forces, row)) <= rounding;
-  return keep;
-}
-
 /* Evaluates the forces with the loads. Fills what they miss of those found. False if accelerations do not exist. */
 static bool find_missing(struct RestForces *forces, double *missing) {
   for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2)
@@ -73,7 +63,7 @@ static void add(const struct RestForces *forces, double *a, double share, const 
   for (size_t row = forces->impulses.contact_count; row < forces->lines; row++) a[row] += share * b[row];
 }
 
-/* Changes the loads until nothing is missing, as long as the limits stay as found. */
+/* Changes the loads until nothing is missing, as long as each step leaves less. */
 static bool correct_loads(struct RestForces *forces) {
   size_t n = forces->n;
   double *missing = forces->missing, *way = missing + n, *next = way + n;
@@ -81,7 +71,7 @@ static bool correct_loads(struct RestForces *forces) {
   if (!find_missing(forces, missing)) return false;
   double square = product_of(forces, missing, missing);
   for (size_t row = 0; row < n; row++) way[row] = missing[row];
-  for (size_t step = 0; step < n && sqrt(square) > rounding && limits_keep(forces); step++) {
+  for (size_t step = 0; step < n && sqrt(square) > rounding; step++) {
     add(forces, forces->load, 1.0, way);
     if (!find_missing(forces, next)) return false;
     double curvature = product_of(forces, way, missing) - product_of(forces, way, next);
@@ -90,9 +80,9 @@ static bool correct_loads(struct RestForces *forces) {
     for (size_t row = forces->impulses.contact_count; row < forces->lines; row++)
       missing[row] += share * (next[row] - missing[row]);
     square = product_of(forces, missing, missing);
+    if (!(square < before)) break;
     for (size_t row = forces->impulses.contact_count; row < forces->lines; row++)
       way[row] = missing[row] + square / before * way[row];
-    if (share == 0.0) break;
   }
   return find_missing(forces, missing);
 }
