@@ -161,6 +161,7 @@ static double mode_from_rest(const struct Resolution *resolution, const struct F
 }
 
 bool friction_is_overcome(const struct Resolution *resolution, size_t friction) {
+  if (is_in_plane(resolution->switches, friction) || resolution->switches->frictions[friction].is_given) return false;
   struct FrictionState state = friction_state(resolution, friction);
   if (state.mode != 0.0 || state.has_no_force || (state.is_moving && state.may_jump)) return false;
   return mode_without_hold(resolution, &state) == 0.0 && is_overcome(resolution, &state);

@@ -30,7 +30,7 @@ void frictions_report_missing(const struct Resolution *resolution, const char *m
  */
 bool frictions_explain_jam(struct Resolution *resolution, size_t branch);
 
-/* True if a friction along a line sticks, and needs more than its stiction. */
+/* True if a friction sticks, and needs more than its stiction. False in planes, and for prescribed velocities. */
 bool friction_is_overcome(const struct Resolution *resolution, size_t friction);
 
 /* Sets the mode of a friction along a line. Leaving rest, it acts with its stiction as long as others hold it. */

@@ -125,11 +125,10 @@ static bool any_rests(const struct Resolution *resolution) {
   return any;
 }
 
+/* True if a friction along a line needs more than its stiction. */
 static bool any_is_overcome(const struct Resolution *resolution) {
   bool any = false;
-  for (size_t i = 0; i < resolution->switches->friction_count; i++)
-    any |= !is_in_plane(resolution->switches, i) && !resolution->switches->frictions[i].is_given &&
-           friction_is_overcome(resolution, i);
+  for (size_t i = 0; i < resolution->switches->friction_count; i++) any |= friction_is_overcome(resolution, i);
   return any;
 }
 

@@ -184,19 +184,17 @@ static void take_contacts(struct RestForces *forces) {
   }
 }
 
-/* Lets a friction slip against its force: at the onset its acceleration is small and has no direction. */
-static void let_slip(struct RestForces *forces, size_t row) {
-  const double *force = &forces->force[row], against[] = {-force[0], -force[1]};
-  struct PlaneState state = state_of_row(forces, row);
-  bool has_force = hypot(force[0], force[1]) > 0.0;
-  plane_slip(forces->resolution, &state, has_force ? against : &forces->behind[row]);
-}
-
-/* Lets frictions that do not slip stick by their constraints alone. */
-static void let_planes_rest(struct RestForces *forces) {
+/*
+ * Lets frictions in planes slip against their forces: at the onset their accelerations are small and have no direction.
+ * The others stick by their constraints alone.
+ */
+static void take_planes(struct RestForces *forces) {
   for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2) {
+    const double *force = &forces->force[row], against[] = {-force[0], -force[1]};
     struct PlaneState state = state_of_row(forces, row);
+    bool has_force = hypot(force[0], force[1]) > 0.0;
     if (!rest_slips(forces, row)) plane_stick(forces->resolution, &state);
+    else plane_slip(forces->resolution, &state, has_force ? against : &forces->behind[row]);
   }
 }
 
@@ -227,8 +225,7 @@ static bool let_overcome_slip(struct RestForces *forces) {
     if (state.mode != PLANE_STICKS || !(state.needed > state.stiction) ||
         !plane_is_overcome(forces->resolution, &state))
       continue;
-    const double against[] = {state.force[0], state.force[1]};
-    plane_slip(forces->resolution, &state, against);
+    plane_slip(forces->resolution, &state, state.force);
     any = true;
   }
   return !any || plane_evaluate(forces->resolution);
@@ -237,9 +234,7 @@ static bool let_overcome_slip(struct RestForces *forces) {
 /* Sets the modes by the solution. False if accelerations do not exist. */
 static bool take_rests(struct RestForces *forces) {
   take_contacts(forces);
-  for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2)
-    if (rest_slips(forces, row)) let_slip(forces, row);
-  let_planes_rest(forces);
+  take_planes(forces);
   lines_take(forces);
   if (!plane_evaluate(forces->resolution)) return false;
   bool has_contacts = forces->impulses.contact_count > 0;

@@ -1,4 +1,4 @@
-/* Whether a motion stops with the frictions in planes that slow down. */
+/* Stops of slow frictions in planes: decides whether the whole motion stops with them. */
 #pragma once
 
 #include "nonsmooth/planes/plane_state.h"

@@ -156,7 +156,7 @@ static double acceleration_of_row(const struct RestForces *forces, size_t row) {
   return forces->resolution->value[friction_slot(forces->resolution->switches, member, FRICTION_RATE)];
 }
 
-/* Returns the share at which the functions are read first: contacts press, and frictions along lines slide. */
+/* Returns the force of a row with which the functions are read first. Contacts press, and frictions along lines slide. */
 static double first_force(const struct RestForces *forces, size_t row) {
   if (row_is_of_contact(forces, row)) return forces->pressure;
   return row_is_of_line(forces, row) ? -forces->given_kinetic[friction_of_row(forces, row)] : 0.0;
