@@ -152,6 +152,52 @@ def test_geoms_that_are_meshes(tmp_path):
     assert "r.roller_ground1.force" in variables and "r.roller_ground2.force" not in variables
 
 
+# Sides 0.2, 0.4 and 0.6 m, the longest one along y: half of them are those of the box to which shapes are fitted.
+FITTED = """<mujoco model="fitted"><compiler fitaabb="{}"/><asset><mesh name="cube" file="cube.stl" scale="0.4 0.6 -0.2"/></asset>
+<worldbody><body name="part"><joint name="j" {} stiffness="1"/><geom type="{}" mesh="cube" pos="{}" fitscale="2"/></body></worldbody></mujoco>"""
+AXIS, SLIDE = 'axis="0 1 0"', 'type="slide"'
+
+
+def inertia_of_fitted(tmp_path, shape, joint, bounds="false"):
+    """The mass or the moment of inertia about the joint: 1 N/m or N.m/rad accelerates it by 1 over that."""
+    center = np.mean(CUBE, axis=0) * [0.4, 0.6, -0.2]
+    (tmp_path / "cube.stl").write_text(CUBE_STL)
+    (tmp_path / "robot.xml").write_text(FITTED.format(bounds, joint, shape, " ".join(map(str, -center))))
+    result = lagc("--linearize", "robot.xml", cwd=tmp_path)
+    if result.returncode != 0:
+        return result.stderr
+    rows = [line for line in result.stdout.splitlines() if line.strip().startswith("[")]
+    return -1 / float(rows[-1].strip(" []").split(",")[0])
+
+
+@pytest.mark.parametrize(
+    "shape, volume, turning",
+    [
+        ("box", 8 * 0.2 * 0.4 * 0.6, (0.2**2 + 0.4**2) / 3),
+        ("ellipsoid", 4 / 3 * np.pi * 0.2 * 0.4 * 0.6, (0.2**2 + 0.4**2) / 5),
+        ("sphere", 4 / 3 * np.pi * 0.4**3, 2 / 5 * 0.4**2),
+        ("cylinder", np.pi * 0.3**2 * 1.2, 0.3**2 / 2),
+    ],
+)
+def test_shapes_that_are_fitted_to_meshes(shape, volume, turning, tmp_path):
+    """Those of MuJoCo: the means of the sides of the box, twice as large by fitscale; the longest one is the axis."""
+    mass = 1000 * volume
+    assert inertia_of_fitted(tmp_path, shape, SLIDE) == pytest.approx(mass, rel=1e-5)
+    assert inertia_of_fitted(tmp_path, shape, AXIS) == pytest.approx(mass * turning, rel=1e-5)
+
+
+def test_a_capsule_that_is_fitted_to_a_mesh(tmp_path):
+    """The straight part is shorter than the longest side by half a radius at each end."""
+    radius, half = 0.3, 0.6 - 0.15
+    ball, rod = 1000 * 4 / 3 * np.pi * radius**3, 1000 * np.pi * radius**2 * 2 * half
+    assert inertia_of_fitted(tmp_path, "capsule", SLIDE) == pytest.approx(ball + rod, rel=1e-5)
+    assert inertia_of_fitted(tmp_path, "capsule", AXIS) == pytest.approx(ball * 2 / 5 * radius**2 + rod * radius**2 / 2, rel=1e-5)
+
+
+def test_shapes_that_are_fitted_to_bounds(tmp_path):
+    assert 'robot.xml:2: a <geom> of type box is fitted to a mesh by fitaabb="true", which is not read' in inertia_of_fitted(tmp_path, "box", SLIDE, "true")
+
+
 def test_meshes_of_mjcf_that_are_lost(tmp_path):
     """Missing meshes give a message, and an error only if the motion depends on them."""
     loss = '<geom type="mesh" mesh="lost"/>'

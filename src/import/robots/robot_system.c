@@ -185,7 +185,7 @@ static void write_robot(struct Writer *writer, const struct Robot *robot, const 
   write_element(writer, "experiment", "stopTime", number(1), "stepSize", number(0.01), NULL);
 }
 
-/* Reports a robot without movable joints, or a floating one without mass. */
+/* Reports a robot without movable joints, or a floating one without mass or moments of inertia. */
 static void check_motion(const struct Robot *robot, bool floats, struct Diagnostics *diagnostics) {
   bool moves = floats;
   for (size_t i = 0; i < robot->joint_count && !moves; i++)
@@ -197,6 +197,7 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
         "or --base floating on the command line");
   else if (floats && !robot->root->moves_inertia)
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
+  else if (floats) robot_check_moments(robot, robot->root, robot->line, diagnostics);
 }
 
 /* Counts joints or tendons with a property; holds the first of them. */

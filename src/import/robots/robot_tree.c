@@ -317,6 +317,42 @@ static void connect_loops(struct Connection *connection) {
     }
 }
 
+/* True if a joint of the robot moves another link against this one. */
+static bool carries_others(const struct Robot *robot, const struct RobotLink *link) {
+  bool carries = false;
+  for (size_t i = 0; i < robot->joint_count && !carries; i++)
+    carries = joint_moves(robot->joints[i]) && robot->joints[i]->parent->carrier == link->carrier;
+  return carries;
+}
+
+/* True if the moment of inertia of a body about some axis is rounding error. */
+static bool has_no_moment(const struct RigidBody *body) {
+  const double rounding = 1e-12;
+  struct Matrix3 axes;
+  principal_axes(&body->tensor, &axes);
+  const struct Matrix3 along = tensor_along(body, &axes);
+  const double x = along.at[0][0], y = along.at[1][1], z = along.at[2][2];
+  return fmin(fmin(x, y), z) <= rounding * fmax(fmax(x, y), z);
+}
+
+void robot_check_moments(const struct Robot *robot, const struct RobotLink *link, long line,
+                         struct Diagnostics *diagnostics) {
+  if (carries_others(robot, link) || !has_no_moment(&link->carrier->carried)) return;
+  report_error(diagnostics, line,
+               "the link '%s' turns freely, and has no moment of inertia about an axis; expected an <inertia> whose "
+               "principal moments are above 0",
+               link->name);
+}
+
+static void check_moments(const struct Connection *connection) {
+  for (size_t i = 0; i < connection->robot->joint_count; i++) {
+    const struct RobotJoint *joint = connection->robot->joints[i];
+    bool turns = joint->type == FLOATING || joint->type == BALL;
+    if (turns && !joint->is_mimicked && joint->armature == 0 && joint->child->moves_inertia)
+      robot_check_moments(connection->robot, joint->child, joint->line, connection->diagnostics);
+  }
+}
+
 /* Reports joints that move no inertia: neither of their link nor of its descendants, nor of a motor. */
 static void check_inertia(struct Connection *connection) {
   struct Robot *robot = connection->robot;
@@ -370,5 +406,6 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics) {
   if (diagnostics->errors == errors) connect_couplings(&connection);
   if (diagnostics->errors == errors) connect_loops(&connection);
   if (diagnostics->errors == errors) check_inertia(&connection);
+  if (diagnostics->errors == errors) check_moments(&connection);
   return diagnostics->errors == errors;
 }

@@ -14,6 +14,10 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);
 struct RobotLink *robot_link(const struct Robot *robot, const char *name, const char *what,
                              struct Diagnostics *diagnostics);
 
+/* Reports a link that turns freely, carries no others, and has no moment of inertia about an axis. */
+void robot_check_moments(const struct Robot *robot, const struct RobotLink *link, long line,
+                         struct Diagnostics *diagnostics);
+
 /* True if the joint has coordinates; false for NULL. */
 bool joint_moves(const struct RobotJoint *joint);
 

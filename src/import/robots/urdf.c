@@ -430,7 +430,7 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
   xmlNodePtr xacro = find_xacro(root);
   urdf.robot->line = line_of(root);
   urdf.robot->gravity[2] = -9.81;
-  urdf.robot->name = required_attribute(&urdf, root, "name");
+  urdf.robot->name = has_attribute(root, "name") ? attribute(root, "name") : copy_text("robot");
   if (options->keyframe != NULL)
     report_error(
         diagnostics, urdf.robot->line,

@@ -64,6 +64,7 @@ static void read_compiler(struct Mjcf *mjcf, xmlNodePtr node) {
   compiler->least_mass = mjcf_number_not_negative(mjcf, node, "boundmass", compiler->least_mass);
   compiler->least_moment = mjcf_number_not_negative(mjcf, node, "boundinertia", compiler->least_moment);
   if (has_attribute(node, "balanceinertia")) compiler->balances_moments = attribute_is(node, "balanceinertia", "true");
+  if (has_attribute(node, "fitaabb")) compiler->fits_bounds = attribute_is(node, "fitaabb", "true");
   if (mjcf->attached_count > 0 && attribute_is(node, "conflict", "merge"))
     mjcf_error(mjcf, node, "conflict=\"merge\" of <compiler> is not read; expected the <option>s in the robot's file");
   if (model == 0) mjcf->total_mass = mjcf_number(mjcf, node, "settotalmass", mjcf->total_mass);

@@ -20,7 +20,7 @@ struct Geom {
   enum GeomType type;
   struct Placement placement;
   double size[3];
-  const struct MjcfMesh *mesh; /* NULL for other types, and for a shape that MuJoCo would fit to a mesh */
+  const struct MjcfMesh *mesh; /* NULL for other types */
 };
 
 /* Places a geom along z between the points of `fromto`. Boxes and ellipsoids get equal widths in x and y. */
@@ -44,15 +44,67 @@ static void place_between(struct Mjcf *mjcf, xmlNodePtr node, struct Geom *geom)
   if (!is_round) geom->size[1] = geom->size[0];
 }
 
+/* Sets the principal axes of a body, and its moments about them in descending order, as MuJoCo does. */
+static void sorted_axes(const struct RigidBody *body, struct Matrix3 *sorted, double moments[3]) {
+  struct Matrix3 axes;
+  principal_axes(&body->tensor, &axes);
+  struct Matrix3 along = tensor_along(body, &axes);
+  int order[3] = {0, 1, 2};
+  for (int i = 0; i < 3; i++)
+    for (int j = 2; j > i; j--)
+      if (along.at[order[j]][order[j]] > along.at[order[j - 1]][order[j - 1]]) {
+        int moved = order[j];
+        order[j] = order[j - 1];
+        order[j - 1] = moved;
+      }
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    moments[i] = along.at[order[i]][order[i]];
+    sorted->at[i][0] = axes.at[i][order[0]];
+    sorted->at[i][1] = axes.at[i][order[1]];
+    sorted->at[i][2] = axes.at[j][order[0]] * axes.at[k][order[1]] - axes.at[k][order[0]] * axes.at[j][order[1]];
+  }
+}
+
+/*
+ * Fits the size and the placement of a shape to a mesh, as MuJoCo does without fitaabb. The shape has the means of the
+ * sides of the box with the mass and the moments of the mesh. The longest side of the box is along z.
+ */
+static void fit_to_mesh(struct Mjcf *mjcf, xmlNodePtr node, const struct MjcfMesh *mesh, struct Geom *geom) {
+  const struct RigidBody *body = &mesh->body;
+  double moments[3], box[3], *size = geom->size, scale = mjcf_number(mjcf, node, "fitscale", 1);
+  struct Placement placement;
+  if (mjcf_compiler(mjcf, node)->fits_bounds)
+    mjcf_error(mjcf, node,
+               "a <geom> of type %s is fitted to a mesh by fitaabb=\"true\", which is not read; expected its size, or "
+               "fitaabb=\"false\"",
+               geom_types[geom->type]);
+  sorted_axes(body, &placement.rotation, moments);
+  memcpy(placement.translation, body->center, sizeof placement.translation);
+  geom->placement = placement_within(&geom->placement, &placement);
+  for (int i = 0; i < 3; i++)
+    box[i] = scale * sqrt(fmax(0, 6 * (moments[(i + 1) % 3] + moments[(i + 2) % 3] - moments[i]) / body->mass)) / 2;
+  memcpy(size, box, sizeof box);
+  if (geom->type == SPHERE) size[0] = (box[0] + box[1] + box[2]) / 3;
+  if (geom->type == CAPSULE || geom->type == CYLINDER) {
+    size[0] = (box[0] + box[1]) / 2;
+    size[1] = geom->type == CAPSULE ? fmax(0, box[2] - size[0] / 2) : box[2];
+  }
+}
+
 /* Reads a geom and reports sizes that are missing or not positive. */
 static struct Geom read_geom(struct Mjcf *mjcf, xmlNodePtr node) {
   static const int needed[GEOM_TYPES] = {[SPHERE] = 1, [CAPSULE] = 2, [CYLINDER] = 2, [BOX] = 3, [ELLIPSOID] = 3};
   struct Geom geom = {.type = (enum GeomType)mjcf_word(mjcf, node, "type", geom_types)};
   const char *mesh = mjcf_text(mjcf, node, "mesh");
-  if (mesh != NULL && geom.type == MESH) geom.mesh = mjcf_mesh(mjcf, node, mesh);
-  if (mesh != NULL) geom.type = MESH;
+  const struct MjcfMesh *found = mesh != NULL ? mjcf_mesh(mjcf, node, mesh) : NULL;
+  bool fits = found != NULL && found->is_weighed && needed[geom.type] > 0;
   geom.placement = mjcf_placement(mjcf, node);
   int errors = mjcf->file.diagnostics->errors;
+  if (fits) fit_to_mesh(mjcf, node, found, &geom);
+  if (fits) return geom;
+  if (found != NULL) geom.mesh = found;
+  if (mesh != NULL) geom.type = MESH;
   if (needed[geom.type] > 0) mjcf_numbers(mjcf, node, "size", 1, 3, geom.size);
   place_between(mjcf, node, &geom);
   for (int i = 0; i < needed[geom.type] && mjcf->file.diagnostics->errors == errors; i++)

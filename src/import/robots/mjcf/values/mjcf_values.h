@@ -39,6 +39,7 @@ struct MjcfCompiler {
   enum InertiaFromGeoms inertia_from_geoms;
   double least_mass, least_moment; /* of each body, and of its principal moments */
   bool balances_moments;           /* moments that no body can have become their mean */
+  bool fits_bounds;                /* shapes are fitted to the bounding boxes of meshes */
   double inertia_groups[2];        /* geoms of groups in this range have a mass */
   char *mesh_folder;               /* folder of mesh files, relative to the file; NULL for its own */
   char *file;                      /* relative to the robot's file; NULL for that */
