@@ -30,6 +30,7 @@
 #include "names/words.h"
 #include "robots/robot_system.h"
 #include "read/shapes/drawn_lines.h"
+#include "read/shapes/shape_meshes.h"
 #include "read/space/frames.h"
 #include "xml/xml.h"
 
@@ -150,6 +151,7 @@ static void read_system(struct Reader *reader, xmlNodePtr root) {
   if (reader->diagnostics->errors == 0) replace_resting_velocities(reader->model);
   reader->model->forces.any |= reader->model->prescribed.inputs_move;
   check_system(reader);
+  warn_of_coarse_meshes(reader);
   if (graph_limit(reader->model->graph) != NULL && reader->diagnostics->errors == 0)
     report_error(reader->diagnostics, 0, "the system is too large: %s; expected fewer or shorter repetitions",
                  graph_limit(reader->model->graph));

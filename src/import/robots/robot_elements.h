@@ -12,6 +12,7 @@ struct Writer {
   long line; /* of the current link or joint in the robot file, for messages */
   const struct RobotOptions *options;
   bool has_own_frictions; /* shapes have different coefficients of friction on the ground */
+  double base_height;     /* start of a floating base along z, in m */
 };
 
 xmlNodePtr write_element_in(const struct Writer *writer, xmlNodePtr parent, const char *name);

@@ -35,9 +35,7 @@ static double shape_friction(double friction) {
   return isnan(friction) ? usual_friction : friction;
 }
 
-/* True if the shape touches the ground, provided that its link moves. */
-static bool meets_ground(const struct RobotOptions *options, const struct RobotLink *link,
-                         const struct Collision *shape) {
+bool meets_ground(const struct RobotOptions *options, const struct RobotLink *link, const struct Collision *shape) {
   return !shape->is_clear && link_touches_ground(options, link->name);
 }
 

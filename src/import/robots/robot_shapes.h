@@ -13,6 +13,9 @@ void write_ground(struct Writer *writer, const struct Robot *robot);
  */
 void write_shapes(struct Writer *writer, const struct RobotLink *link, bool moves);
 
+/* True if the shape touches the ground, provided that its link moves. */
+bool meets_ground(const struct RobotOptions *options, const struct RobotLink *link, const struct Collision *shape);
+
 /*
  * Finds the pairs of shapes of a URDF: of links that move relative to each other, and are not parent and child. Warns
  * of pairs of types that cannot touch.

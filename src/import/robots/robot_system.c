@@ -29,6 +29,7 @@
 #include "robots/robot_fluid.h"
 #include "robots/robot_joint.h"
 #include "robots/robot_shapes.h"
+#include "robots/robot_start.h"
 #include "robots/robot_tendon.h"
 #include "robots/robot_transmission.h"
 #include "robots/robot_tree.h"
@@ -38,8 +39,6 @@
 
 /* Names of a floating base, and of the point at the tool. */
 static const char base[] = "base", tool[] = "tool";
-
-static const struct JointStart no_start = {.position = {[3] = 1}};
 
 /* Writes all links that are fixed to this one, and itself, as one body. */
 static void write_body(const struct Writer *writer, const struct RobotLink *link) {
@@ -63,7 +62,8 @@ static void write_link(struct Writer *writer, const struct RobotLink *link) {
     write_joint(writer, joint);
   }
   writer->line = link->line;
-  if (joint == NULL && floats) write_free_coordinates(writer, base, &no_start, "free motion of the base");
+  const struct JointStart start = {.position = {[2] = writer->base_height, [3] = 1}};
+  if (joint == NULL && floats) write_free_coordinates(writer, base, &start, "free motion of the base");
   xmlNodePtr frame = write_element(writer, "frame", "name", link->symbol, NULL);
   if (joint != NULL) {
     const struct RobotLink *parent = joint->parent;
@@ -256,13 +256,6 @@ static bool limit_start(struct RobotJoint *joint) {
   return *start != before;
 }
 
-/* True if the <include> gives the coordinate a start value. */
-static bool has_own_start(const struct RobotOptions *options, const char *coordinate) {
-  xmlNodePtr node = options->include != NULL ? options->include->children : NULL;
-  while (node != NULL && !(is_element(node, "coordinate") && attribute_is(node, "name", coordinate))) node = node->next;
-  return node != NULL && has_attribute(node, "start");
-}
-
 /* Moves starts beyond stops to these, with a warning unless the <include> gives another start. */
 static void limit_starts(const struct Robot *robot, const struct RobotOptions *options,
                          const struct Diagnostics *diagnostics) {
@@ -270,7 +263,7 @@ static void limit_starts(const struct Robot *robot, const struct RobotOptions *o
   for (size_t i = 0; i < robot->joint_count && options->has_stops; i++) {
     struct RobotJoint *joint = robot->joints[i];
     const char *coordinate = joint->type == BALL ? format_text("%s_qw", joint->symbol) : joint->symbol;
-    if (limit_start(joint) && !has_own_start(options, coordinate))
+    if (limit_start(joint) && robot_own_start(options, coordinate) == NULL)
       count_one(&starts, "joint", joint->name, joint->line);
   }
   warn_of_limits(diagnostics, &starts, false, "limits replace the start values, which are beyond them,",
@@ -342,6 +335,7 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *given, 
   struct RobotOptions own = *given, *options = &own;
   own.floats &= !is_mjcf; /* bodies of the world float, which itself is fixed */
   const struct RobotLink *end = NULL;
+  double height = 0;
   if (diagnostics->errors == errors && robot_connect(robot, diagnostics)) {
     check_motion(robot, options->floats, diagnostics);
     check_ground_contact(robot, options, diagnostics);
@@ -350,14 +344,17 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *given, 
   if (diagnostics->errors == errors) {
     check_limits(robot, options, diagnostics);
     limit_starts(robot, options, diagnostics);
+    if (!is_mjcf && options->has_ground) height = robot_start_height(robot, options, diagnostics);
     if (!is_mjcf) find_pairs(robot, options, diagnostics);
   }
   xmlFreeDoc(document);
   document = NULL;
   if (diagnostics->errors == errors) {
     document = xmlNewDoc((const xmlChar *)"1.0");
-    struct Writer writer = {
-        .system = xmlNewNode(NULL, (const xmlChar *)"system"), .line = robot->line, .options = options};
+    struct Writer writer = {.system = xmlNewNode(NULL, (const xmlChar *)"system"),
+                            .line = robot->line,
+                            .options = options,
+                            .base_height = height};
     xmlDocSetRootElement(document, writer.system);
     write_robot(&writer, robot, end);
     schema_check(document, diagnostics);

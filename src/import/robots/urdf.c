@@ -85,6 +85,10 @@ static char *read_mesh(const struct RobotFile *urdf, xmlNodePtr node, bool touch
   struct Mesh *mesh = mesh_read(path_beside_file(robot, path), factors, &problem);
   if (mesh == NULL) return problem;
   if (touches && !mesh_find_corners(mesh)) problem = format_text("the mesh '%s' is flat; expected a volume", named);
+  collision->corners = allocate(mesh->corner_count, sizeof *collision->corners);
+  collision->corner_count = mesh->corner_count;
+  for (size_t i = 0; i < mesh->corner_count; i++)
+    memcpy(collision->corners[i], mesh->points[mesh->corners[i]], sizeof *collision->corners);
   release(mesh->points);
   release(mesh->triangles);
   collision->type = "mesh";

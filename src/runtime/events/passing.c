@@ -47,8 +47,10 @@ static const double further_steps = 16.0, further_share = 2.0, share_before_even
 /* Length of the first interval, relative to the time between the last two events. */
 static const double look_ahead_share = 1.25;
 
-static const char gathering[] =
+static const char gathering[] = "events accumulate (Zeno behaviour)";
+static const char bounces[] =
     "events accumulate (Zeno behaviour), as bounces by an <event> do; a <contact> comes to rest";
+static const char chatter[] = "a friction sticks and slides without end (Zeno behaviour)";
 static const char flutter[] = "a contact opens and closes without end (Zeno behaviour)";
 static const char too_close[] = "the events are too close together to be separated";
 static const char no_modes[] = "the accelerations do not exist with these parameters";
@@ -291,12 +293,19 @@ static const char *report_zeno(struct Instance *instance, const struct Communica
   if (instance->stops_at_events) progress->searched = step->start;
   if (is_at_corner(instance, progress->searched, indicator)) return touched_corner;
   name_indicator(indicator, name, sizeof name);
+  if (indicator >= friction_indicator(lagrangian.switches, 0)) {
+    log_message(instance, STATUS_DISCARD,
+                "time %.15g: %s sticks and slides without end; expected another tolerance, or parameters for which it "
+                "clearly sticks or slides",
+                progress->searched, name);
+    return chatter;
+  }
   if (!is_of_contact(indicator)) {
     log_message(
         instance, STATUS_DISCARD,
         "time %.15g: %s switches without end (Zeno behaviour); expected a switch with hysteresis, or other parameters",
         progress->searched, name);
-    return gathering;
+    return lagrangian.switches->event_count > 0 ? bounces : gathering;
   }
   log_message(instance, STATUS_DISCARD,
               "time %.15g: %s opens and closes without end, as when it opens without speed%s; expected %s",

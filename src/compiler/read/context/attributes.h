@@ -35,6 +35,14 @@ struct Occurrence {
   size_t number;            /* index among the declarations of its kind: coordinates, constraints, contacts, ... */
 };
 
+/* Meshes that touch at MOST_CORNERS of more corners; of these the shape whose hull reaches farthest beyond them. */
+struct CoarseMeshes {
+  size_t count;
+  const char *shape;
+  long line;
+  double residual; /* m */
+};
+
 /* The state of the reader, which all readers of elements share. */
 struct Reader {
   struct Model *model;
@@ -44,8 +52,9 @@ struct Reader {
   struct Names *frames;         /* name -> size_t, an index into the model's frames */
   struct Names *spatial_points; /* name -> struct SpatialPoint, see frames.h */
   struct Names *meshes;         /* path and scale -> struct Mesh, see shape_meshes.h; NULL before the first */
-  struct Source *source;        /* the current file */
-  struct Includes *includes;    /* all included files */
+  struct CoarseMeshes coarse_meshes;
+  struct Source *source;     /* the current file */
+  struct Includes *includes; /* all included files */
   struct Diagnostics *diagnostics;
   const struct ReaderOptions *options;
   bool *definition_used;

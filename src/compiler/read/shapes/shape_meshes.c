@@ -51,6 +51,15 @@ struct Mesh *mesh_of_shape(struct Reader *reader, xmlNodePtr node) {
   return mesh;
 }
 
+static void note_coarse_mesh(struct CoarseMeshes *meshes, const struct ContactShape *shape, long line) {
+  double residual = shape->mesh->residual;
+  if (meshes->count++ == 0 || residual > meshes->residual) {
+    meshes->shape = shape->name;
+    meshes->line = line;
+    meshes->residual = residual;
+  }
+}
+
 bool prepare_corners(struct Reader *reader, xmlNodePtr node, const struct ContactShape *shape) {
   struct Mesh *mesh = shape->mesh;
   if (shape->type != SHAPE_MESH || (mesh != NULL && mesh->corner_count > 0)) return true;
@@ -64,10 +73,18 @@ bool prepare_corners(struct Reader *reader, xmlNodePtr node, const struct Contac
     return false;
   }
   if (mesh->corner_count == MOST_CORNERS && mesh->residual > 0.0)
-    report_warning(
-        reader->diagnostics, line_of(node),
-        "the convex hull of the shape '%s' has many corners, and touches at %d of them; it reaches up to %.2g m "
-        "beyond these",
-        shape->name, MOST_CORNERS, mesh->residual);
+    note_coarse_mesh(&reader->coarse_meshes, shape, note_line(reader->diagnostics, line_of(node)));
   return true;
+}
+
+void warn_of_coarse_meshes(const struct Reader *reader) {
+  const struct CoarseMeshes *meshes = &reader->coarse_meshes;
+  if (meshes->count == 0) return;
+  size_t others = meshes->count - 1;
+  report_warning(reader->diagnostics, meshes->line,
+                 "the convex hull of the shape '%s'%s has many corners, and touches at %d of them; it reaches up to "
+                 "%.2g m beyond these",
+                 meshes->shape,
+                 others > 0 ? format_text(" and of %zu other mesh%s", others, others > 1 ? "es" : "") : "",
+                 MOST_CORNERS, meshes->residual);
 }

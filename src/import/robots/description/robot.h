@@ -16,6 +16,8 @@ struct Collision {
   double radius, length, size[3]; /* m; cylinders are along their z axis; size is that of a box */
   char *file;                     /* of a mesh, relative to the robot file; NULL for other types */
   double scale[3];                /* of a mesh: m per unit of the file */
+  double (*corners)[3];           /* of a mesh: where it may touch, m, in its own frame */
+  size_t corner_count;            /* 0 for other types, and if it is only drawn */
   char *color;                    /* such as "#ff8000ff"; NULL if the file gives none */
   double friction;                /* coefficient on the ground; NAN if the file gives none */
   bool is_clear;                  /* never touches the ground */

@@ -21,11 +21,10 @@ size_t robot_link_index(const struct Robot *robot, const char *name) {
   return i;
 }
 
-/* Returns the placement of the child in the parent at the start. */
-static struct Placement placement_at_start(const struct RobotJoint *joint) {
+struct Placement placement_at_start(const struct RobotJoint *joint) {
   struct Placement motion = no_displacement;
   const double *start = joint->start.position;
-  if (joint->type == REVOLUTE) motion.rotation = rotation_about(joint->axis, start[0]);
+  if (joint->type == REVOLUTE || joint->type == CONTINUOUS) motion.rotation = rotation_about(joint->axis, start[0]);
   for (int i = 0; i < 3 && joint->type == PRISMATIC; i++) motion.translation[i] = joint->axis[i] * start[0];
   if (joint->type == PRESCRIBED) motion = placement_of(start, &start[3]);
   if (joint->type == FLOATING) {

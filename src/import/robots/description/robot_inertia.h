@@ -26,6 +26,9 @@ struct Velocities {
 /* Returns the index of the link of this name; the number of links if there is none. */
 size_t robot_link_index(const struct Robot *robot, const char *name);
 
+/* Returns the placement of the child of a joint in its parent at the start. */
+struct Placement placement_at_start(const struct RobotJoint *joint);
+
 /* Sets the velocity in the world of a point of a body that moves with this velocity. */
 void robot_velocity_at(const struct Velocity *velocity, const double point[3], double result[3]);
 

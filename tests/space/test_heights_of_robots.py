@@ -1,0 +1,94 @@
+"""A floating base starts where the lowest shape of its robot stands on the ground, unless the user gives a height."""
+
+import numpy as np
+import pytest
+
+import fmu
+from building import build_systems
+from fmu import lagc
+from meshes import CUBE, stl_text, triangles_of
+
+INERTIAL = '<inertial><mass value="1"/><inertia ixx="0.1" iyy="0.1" izz="0.1" ixy="0" ixz="0" iyz="0"/></inertial>'
+SHAPES = {
+    "Sphere": '<sphere radius="0.3"/>',
+    "Box": '<box size="0.4 0.6 0.2"/>',
+    "Cylinder": '<cylinder radius="0.2" length="0.7"/>',
+    "Capsule": '<capsule radius="0.2" length="0.7"/>',
+    "Mesh": '<mesh filename="cube.stl" scale="0.4 0.6 -0.2"/>',
+}
+# A leg of two joints, one of which follows the other, below the base; its shape is turned.
+LEGGED = """<robot name="legged"><link name="trunk">{INERTIAL}</link><link name="upper">{INERTIAL}</link><link name="lower">{INERTIAL}
+  <collision><origin xyz="0.1 0.2 -0.4" rpy="0.5 -0.7 0.3"/><geometry>{}</geometry></collision></link>
+  <joint name="hip" type="continuous"><origin xyz="0 0 -0.1" rpy="0.2 0 0"/><parent link="trunk"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+  <joint name="knee" type="revolute"><origin xyz="0 0 -0.5"/><parent link="upper"/><child link="lower"/><axis xyz="1 0 0"/>
+    <limit lower="-1" upper="1"/><mimic joint="hip" multiplier="2" offset="0.1"/></joint></robot>""".replace("{INERTIAL}", INERTIAL)
+SYSTEM = '<system name="{}"><include file="legged.urdf" as="r" base="floating" ground="true">{}</include></system>'
+BENT = '<coordinate name="hip" start="0.3"/>'
+FORCE = "r.lower_ground1.force"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    texts, files = {}, {}
+    for shape, text in SHAPES.items():
+        for name, start in ((f"Legged{shape}", ""), (f"Bent{shape}", BENT)):
+            texts[name] = SYSTEM.format(name, start)
+            files |= {f"{name}/legged.urdf": LEGGED.format(text), f"{name}/cube.stl": stl_text(CUBE, triangles_of(CUBE))}
+    build_systems("heights-of-robots", texts, files=files)
+
+
+def force_at(name, height=None):
+    instance = fmu.Instance(name, logging=False)
+    try:
+        instance.initialize({} if height is None else {"r.base_z": height})
+        return instance.get(FORCE), instance.get("r.base_z")
+    finally:
+        instance.free()
+
+
+@pytest.mark.parametrize("kind", ["Legged", "Bent"])
+@pytest.mark.parametrize("shape", SHAPES)
+def test_the_lowest_shape_stands_on_the_ground(kind, shape):
+    """It does not press, and does 0.2 mm lower: the height is rounded up to 0.1 mm."""
+    force, height = force_at(kind + shape)
+    assert force == 0 and height > 0.5
+    assert force_at(kind + shape, height - 2e-4)[0] > 0
+
+
+def message(tmp_path, text, start="", ground='ground="true"'):
+    (tmp_path / "legged.urdf").write_text(LEGGED.format(text))
+    (tmp_path / "system.xml").write_text(SYSTEM.format("Told", start).replace('ground="true"', ground))
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0, result.stderr
+    return result.stderr
+
+
+def test_a_note_has_the_height(tmp_path):
+    """The ball lies straight below the base: 0.1 + 0.5 + 0.4 + 0.3 m, less what the hip's roll by 0.2 rad lifts it."""
+    ball = LEGGED.replace('xyz="0.1 0.2 -0.4"', 'xyz="0 0 -0.4"').replace('offset="0.1"', 'offset="0"')
+    (tmp_path / "legged.urdf").write_text(ball.format(SHAPES["Sphere"]))
+    (tmp_path / "system.xml").write_text(SYSTEM.format("Told", ""))
+    height = np.ceil((0.1 + 0.9 * np.cos(0.2) + 0.3) * 1e4) / 1e4
+    expected = f"legged.urdf:1: note: the base starts at base_z = {height:g}, where the link 'lower' stands on the ground"
+    assert expected in lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
+
+
+@pytest.mark.parametrize("start, ground", [('<coordinate name="base_z" start="2"/>', 'ground="true"'), ("", "")])
+def test_no_note_without_need(start, ground, tmp_path):
+    assert "note:" not in message(tmp_path, SHAPES["Box"], start, ground)
+
+
+# The centre of the ball is at Rx(0.2) ((0, 0, -0.5) + Rx(0.1) (0.1, 0.2, -0.4)) - (0, 0, 0.1), whose z is -0.91306.
+@pytest.mark.parametrize(
+    "options, message",
+    [
+        ('base="floating" ground="true"', 'below the ground at the start; expected start="1.2131" of base_z, or above'),
+        ('ground="true"', 'is 1.2 m below the ground at the start; expected other start values, or links without it in ground="..."'),
+    ],
+)
+def test_warnings_of_links_below_the_ground(options, message, tmp_path):
+    (tmp_path / "legged.urdf").write_text(LEGGED.format(SHAPES["Sphere"]))
+    start = '<coordinate name="base_z" start="0.5"/>' if "floating" in options else ""
+    (tmp_path / "system.xml").write_text(f'<system name="Told"><include file="legged.urdf" as="r" {options}>{start}</include></system>')
+    result = lagc("system.xml", "-o", "out", cwd=tmp_path)
+    assert result.returncode == 0 and message in result.stderr and "note:" not in result.stderr
