@@ -18,7 +18,7 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
-/* The workspace of search.c comes first. The arrays before `value` are initially 0. */
+/* The workspace of search.c comes first. The arrays before `value`, and `forced`, are initially 0. */
 static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = resolution_value_count(switches), indicators = indicator_count(switches);
@@ -28,12 +28,12 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   ARENA_NUMBERS(&arena, values, &resolution->largest);
   ARENA_NUMBERS(&arena, indicators, &resolution->flips);
   ARENA_NUMBERS(&arena, switches->branch_count, &resolution->rate, &resolution->absent);
-  ARENA_NUMBERS(&arena, switches->contact_count, &resolution->was_opened, &resolution->struck);
+  ARENA_NUMBERS(&arena, switches->contact_count, &resolution->struck, &resolution->start_gap);
   ARENA_NUMBERS(&arena, values, &resolution->value, &resolution->error_bound, &resolution->other_error_bound);
   ARENA_NUMBERS(&arena, switches->friction_count, &resolution->force_error_bound, &resolution->began,
                 &resolution->first_rate);
   ARENA_NUMBERS(&arena, switches->event_count, &resolution->condition, &resolution->happened);
-  ARENA_NUMBERS(&arena, modes, &resolution->first_mode, &resolution->takes_part);
+  ARENA_NUMBERS(&arena, modes, &resolution->first_mode);
   ARENA_NUMBERS(&arena, switches->resting_count, &resolution->moves);
   if (switches->resting_count > 0) {
     ARENA_NUMBERS(&arena, lagrangian.input_count, &resolution->probe_input);
@@ -47,7 +47,9 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   ARENA_NUMBERS(&arena, lagrangian.state_count, &resolution->rounded, &resolution->derivative);
   ARENA_NUMBERS(&arena, indicators, &resolution->rounding);
   ARENA_NUMBERS(&arena, rows_of_matrix() + 2 * lagrangian.constraints.count, &resolution->correction);
-  return (arena.next - (uintptr_t)work) / sizeof(double);
+  ARENA_TAKE(&arena, resolution->forced, switches->contact_count);
+  ARENA_TAKE(&arena, resolution->part, modes);
+  return (arena.next - (uintptr_t)work + sizeof(double) - 1) / sizeof(double);
 }
 
 size_t resolution_work_count(void) {
@@ -60,6 +62,7 @@ struct Resolution resolution_of(struct Instance *instance) {
   struct Resolution resolution = {.instance = instance, .switches = switches};
   lay_out_resolution(&resolution, instance->switching_work);
   memset(resolution.largest, 0, (size_t)(resolution.value - resolution.largest) * sizeof(double));
+  memset(resolution.forced, 0, switches->contact_count * sizeof *resolution.forced);
   return resolution;
 }
 

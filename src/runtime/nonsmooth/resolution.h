@@ -3,6 +3,16 @@
 
 #include "instance/event_laws.h"
 
+/* FORCED_OPEN: the contact pulled, or an event opened it. FORCED_CLOSED: by the solution for all forces at rest. */
+enum Forced { UNFORCED, FORCED_OPEN, FORCED_CLOSED };
+
+/*
+ * The part of a contact or friction in the problem that is being solved, struct ContactImpulses or struct RestForces. In
+ * the latter IS_OVERCOME is a friction that slips at its limit, and WAS_OPEN a contact that may close. IS_SLOW is a
+ * friction that slid, and continues with its velocity if it does not stick.
+ */
+enum Part { LEFT_OUT, TAKES_PART, IS_OVERCOME, IS_SLOW, WAS_OPEN };
+
 /*
  * The state of an event resolution: values and rounding error bounds at the present modes and state, and its history.
  * The arrays are parts of one workspace; value and error_bound are valid if is_evaluated.
@@ -21,12 +31,14 @@ struct Resolution {
   double *largest;             /* of velocities and rates in value[] since the start of the event */
   double *condition;           /* value of each condition before the last change */
   double *happened;            /* 1 for each event that happened in this round, else 0 */
-  double *flips, *was_opened;  /* switches in the event; contacts: 1 opened, -1 closed by force, else 0 */
+  double *flips;               /* of each indicator: switches in the event */
+  enum Forced *forced;         /* of each contact: what its force, or an event, did last */
   double *rate;                /* of each branch before its last switch; 0 if it has not switched */
   double *absent;              /* of each branch: its mode whose piece has no value here; 0 for none */
   double *first_mode;          /* of each contact, then each friction: at the start of the event */
   double *struck;              /* contacts: 1 if an impulse acted in the event, else 0 */
-  double *takes_part;          /* of each contact, then each friction: 1 if in struct ContactImpulses, else 0 */
+  enum Part *part;             /* of each contact, then each friction */
+  double *start_gap;           /* of each contact: the most negative one that rounded start values gave; else 0 */
   double *moves;               /* of each resting velocity: its mode by find_resting */
   double *probe_input, *probe_acceleration, *probe_sums; /* workspace of find_resting */
   double *ball_distance;                                 /* workspace of explain_ball() */
@@ -183,6 +195,11 @@ static inline bool may_change_gaps(const struct Resolution *resolution) {
 /* Returns the value of a mode, given its index among the parameters. */
 static inline double mode_of(const struct Resolution *resolution, size_t mode) {
   return resolution->instance->parameter[mode];
+}
+
+/* Returns the element of part[] of a friction. */
+static inline enum Part *part_of_friction(const struct Resolution *resolution, size_t friction) {
+  return &resolution->part[resolution->switches->contact_count + friction];
 }
 
 /* Sets a mode, and notes that something changed. */

@@ -67,7 +67,7 @@ static bool sticks_on(const struct Resolution *resolution, size_t contact) {
 
 /* Returns the rounding error bound of the acceleration; a larger one for a contact whose force has just vanished. */
 static double error_bound_of_acceleration(const struct Resolution *resolution, size_t contact) {
-  bool parts = resolution->was_opened[contact] != 0.0;
+  bool parts = resolution->forced[contact] != UNFORCED;
   return parts ? rounded_acceleration_of_gap(resolution, contact)
                : resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
 }
@@ -76,13 +76,14 @@ static double error_bound_of_acceleration(const struct Resolution *resolution, s
 static bool any_comes_back(const struct Resolution *resolution) {
   bool any = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    any |= resolution->was_opened[i] > 0.0 && resolution->takes_part[i] != 0.0 && !contact_is_closed(resolution, i) &&
+    any |= resolution->forced[i] == FORCED_OPEN && resolution->part[i] != LEFT_OUT &&
+           !contact_is_closed(resolution, i) &&
            contact_value(resolution, i, CONTACT_ACCELERATION) < -error_bound_of_acceleration(resolution, i);
   return any;
 }
 
 /*
- * Selects the contacts at rest without sticking friction and the frictions that slide, in takes_part. True if a
+ * Lets the contacts at rest without sticking friction and the frictions that slide take part. True if a
  * selected friction rests on a selected contact.
  */
 static bool choose_resting(struct Resolution *resolution) {
@@ -90,11 +91,12 @@ static bool choose_resting(struct Resolution *resolution) {
   size_t contacts = switches->contact_count;
   bool slides = false;
   for (size_t i = 0; i < contacts; i++)
-    resolution->takes_part[i] = contact_is_at_rest(resolution, i) && !sticks_on(resolution, i) ? 1.0 : 0.0;
+    resolution->part[i] = contact_is_at_rest(resolution, i) && !sticks_on(resolution, i) ? TAKES_PART : LEFT_OUT;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    resolution->takes_part[contacts + i] = friction_sticks(resolution, i) ? 0.0 : 1.0;
+    *part_of_friction(resolution, i) = friction_sticks(resolution, i) ? LEFT_OUT : TAKES_PART;
     for (size_t k = 0; k < contacts; k++)
-      slides |= resolution->takes_part[k] * resolution->takes_part[contacts + i] != 0.0 && rests_on(switches, i, k);
+      slides |=
+          resolution->part[k] != LEFT_OUT && *part_of_friction(resolution, i) != LEFT_OUT && rests_on(switches, i, k);
   }
   return slides;
 }
@@ -105,7 +107,7 @@ static bool find_contact_impulses(struct Resolution *resolution, struct ContactI
   bool changed = resolution->changed;
   resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (resolution->takes_part[i] != 0.0) set_contact(resolution, i, false);
+    if (resolution->part[i] != LEFT_OUT) set_contact(resolution, i, false);
   bool done = contact_impulses_create(resolution, impulses);
   resolution_restore_modes(resolution);
   resolution->changed = changed;
@@ -184,8 +186,8 @@ const char *contact_forces_report_crushed(struct Resolution *resolution, size_t 
   const struct SwitchTable *switches = resolution->switches;
   struct ContactImpulses impulses;
   for (size_t i = 0; i < switches->contact_count; i++)
-    resolution->takes_part[i] = i == contact || is_touching(resolution, i) ? 1.0 : 0.0;
-  for (size_t i = 0; i < switches->friction_count; i++) resolution->takes_part[switches->contact_count + i] = 0.0;
+    resolution->part[i] = i == contact || is_touching(resolution, i) ? TAKES_PART : LEFT_OUT;
+  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = LEFT_OUT;
   if (!find_contact_impulses(resolution, &impulses)) return no_contact_impulses;
   log_crushed(resolution, &impulses, contact);
   contact_impulses_free(resolution, &impulses);
@@ -208,7 +210,7 @@ static bool drop_fixed_contacts(struct Resolution *resolution, const struct Cont
   *drops = false;
   for (size_t i = 0; i < impulses->contact_count && done; i++) {
     if (impulses->delassus[i * impulses->count + i] > smallest_share_of_motion * own[i]) continue;
-    resolution->takes_part[impulses->member[i]] = 0.0;
+    resolution->part[impulses->member[i]] = LEFT_OUT;
     *drops = true;
   }
   if (own != NULL) scratch_return(resolution->instance, SCRATCH_RESTING);
@@ -346,7 +348,7 @@ static bool take_solution(struct Resolution *resolution, const struct RestingCon
     if (is_closed ? !parts : !presses) continue;
     set_contact(resolution, contact, !is_closed);
     if (!is_closed) let_slide(resolution, contact);
-    resolution->was_opened[contact] = is_closed ? 1.0 : -1.0;
+    resolution->forced[contact] = is_closed ? FORCED_OPEN : FORCED_CLOSED;
     changes = true;
   }
   return changes;
@@ -377,7 +379,7 @@ static bool any_begins_to_slide(const struct Resolution *resolution) {
   for (size_t i = 0; i < switches->friction_count; i++) {
     if (friction_sticks(resolution, i) || !(sliding_speed(resolution, i) <= slowest)) continue;
     for (size_t k = 0; k < switches->contact_count; k++)
-      begins |= resolution->takes_part[k] != 0.0 && rests_on(switches, i, k);
+      begins |= resolution->part[k] != LEFT_OUT && rests_on(switches, i, k);
   }
   return begins;
 }

@@ -115,9 +115,9 @@ double sliding_share(const struct Resolution *resolution, size_t friction) {
   return resolution->value[friction_slot(switches, friction, FRICTION_VELOCITY)] / speed;
 }
 
-/* The caller selects contacts and frictions by takes_part. */
+/* The caller selects contacts and frictions by enum Part. */
 static bool contact_takes_part(const struct Resolution *resolution, size_t contact) {
-  return resolution->takes_part[contact] != 0.0;
+  return resolution->part[contact] != LEFT_OUT;
 }
 
 static bool friction_takes_part(const struct Resolution *resolution, size_t friction) {
@@ -125,8 +125,7 @@ static bool friction_takes_part(const struct Resolution *resolution, size_t fric
   bool rests = false;
   for (size_t i = 0; i < switches->contact_count; i++)
     rests |= contact_takes_part(resolution, i) && rests_on(switches, friction, i);
-  return rests && !switches->frictions[friction].is_given &&
-         resolution->takes_part[switches->contact_count + friction] != 0.0;
+  return rests && !switches->frictions[friction].is_given && *part_of_friction(resolution, friction) != LEFT_OUT;
 }
 
 static size_t constraint_of(const struct ContactImpulses *impulses, const struct SwitchTable *switches, size_t row) {

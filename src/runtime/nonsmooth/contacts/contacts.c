@@ -11,8 +11,8 @@
  * closes contacts that come to rest. Otherwise it projects out penetrations. open_pulling() opens the closed contact
  * that pulls most. resolve.c repeats the rounds until none changes anything.
  *
- * was_opened of a contact is 1 after its force or an event has opened it, -1 after contact_forces.c has closed it, and
- * 0 again after an impact. A contact with a value other than 0 cannot come to rest in this event by itself.
+ * A contact that its force or an event has opened cannot come to rest by itself in the event, until an impact. The same
+ * holds for one that contact_forces.c has closed (enum Forced).
  */
 #include <float.h>
 #include <math.h>
@@ -71,7 +71,7 @@ static size_t find_impact(const struct Resolution *resolution) {
   double fastest = 0.0;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
     size_t rate = contact_slot(resolution->switches, i, CONTACT_RATE);
-    bool is_open = !contact_is_closed(resolution, i) && resolution->was_opened[i] == 0.0;
+    bool is_open = !contact_is_closed(resolution, i) && resolution->forced[i] == UNFORCED;
     bool is_hit_first =
         is_hit(resolution, contact_indicator(resolution->switches, i)) && is_open && resolution->impacts == 0;
     double error = fmax(resolution->error_bound[rate], resolution->lost_speed);
@@ -141,12 +141,12 @@ static bool choose_hit(struct Resolution *resolution, size_t contact, bool passe
     size_t rate = contact_slot(switches, i, CONTACT_RATE);
     double slower = resolution->value[rate] - fastest;
     bool is_tied = slower <= error_bound + resolution->error_bound[rate] - equal_share * fastest;
-    resolution->takes_part[i] = is_touching(resolution, i) && (is_tied || !passes) ? 1.0 : 0.0;
-    if (resolution->takes_part[i] == 0.0) continue;
+    resolution->part[i] = is_touching(resolution, i) && (is_tied || !passes) ? TAKES_PART : LEFT_OUT;
+    if (resolution->part[i] == LEFT_OUT) continue;
     is_fine &= check_restitution(resolution, i);
-    resolution->was_opened[i] = 0.0;
+    resolution->forced[i] = UNFORCED;
   }
-  for (size_t i = 0; i < switches->friction_count; i++) resolution->takes_part[switches->contact_count + i] = 1.0;
+  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = TAKES_PART;
   return is_fine;
 }
 
@@ -236,7 +236,7 @@ static bool closes_by_projection(const struct Resolution *resolution, size_t con
 /* True if an open contact touches, and would sink, or only make bounces that errors hide. */
 static bool comes_to_rest(const struct Resolution *resolution, size_t contact) {
   size_t acceleration = contact_slot(resolution->switches, contact, CONTACT_ACCELERATION);
-  if (resolution->was_opened[contact] != 0.0 || !is_touching(resolution, contact)) return false;
+  if (resolution->forced[contact] != UNFORCED || !is_touching(resolution, contact)) return false;
   if (sinks_without_acceleration(resolution, contact) || closes_by_projection(resolution, contact)) return true;
   if (!(-resolution->value[acceleration] > resolution->error_bound[acceleration])) return false;
   return is_overtaken(resolution, contact) ||
@@ -283,7 +283,7 @@ static bool let_stopped_stick(struct Resolution *resolution) {
 
 /*
  * True if a touching contact stays with others that come to rest. Rates of a body that comes to lie flat differ by
- * rounding errors. The last contact does not accelerate by itself, but shares the load. was_opened is ignored: a
+ * rounding errors. The last contact does not accelerate by itself, but shares the load. enum Forced is ignored: a
  * contact that pulled before the others came to rest may rest too.
  */
 static bool rests_with_others(const struct Resolution *resolution, size_t contact) {
@@ -374,7 +374,7 @@ static bool open_parting(struct Resolution *resolution) {
     double rate = resolution->value[slot], least = resolution->thrown ? resolution->error_bound[slot] : kink;
     if (!contact_is_closed(resolution, i) || !(rate > least)) continue;
     set_contact(resolution, i, false);
-    resolution->was_opened[i] = 1.0;
+    resolution->forced[i] = FORCED_OPEN;
     opens = true;
   }
   return opens;
@@ -459,7 +459,7 @@ static bool is_rounded(const struct Resolution *resolution, size_t contact) {
 }
 
 /*
- * Projects out penetrations by rounded start values; takes_part keeps the most negative gap of each contact. True if
+ * Projects out penetrations by rounded start values; start_gap keeps the most negative one of each contact. True if
  * there are any, and they can be moved.
  */
 static bool part_at_start(struct Resolution *resolution) {
@@ -468,7 +468,7 @@ static bool part_at_start(struct Resolution *resolution) {
   resolution_keep_modes(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
     if (!is_rounded(resolution, i)) continue;
-    resolution->takes_part[i] = fmin(resolution->takes_part[i], contact_value(resolution, i, CONTACT_GAP));
+    resolution->start_gap[i] = fmin(resolution->start_gap[i], contact_value(resolution, i, CONTACT_GAP));
     set_contact(resolution, i, true);
     parts = true;
   }
@@ -479,15 +479,14 @@ static bool part_at_start(struct Resolution *resolution) {
 
 static void log_parted(const struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    if (resolution->takes_part[i] < 0.0 && !is_rounded(resolution, i))
+    if (resolution->start_gap[i] < 0.0 && !is_rounded(resolution, i))
       log_message(resolution->instance, STATUS_DONE,
                   "time %g: the start values are moved to open the contact '%s', whose gap was %g", resolution->time,
-                  resolution->switches->contacts[i].name, resolution->takes_part[i]);
+                  resolution->switches->contacts[i].name, resolution->start_gap[i]);
 }
 
 static bool lift_start(struct Resolution *resolution) {
   int count = 0;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++) resolution->takes_part[i] = 0.0;
   while (count < LIFT_LIMIT && part_at_start(resolution)) {
     if (!resolution_evaluate(resolution)) return false;
     count++;
@@ -499,7 +498,7 @@ static bool lift_start(struct Resolution *resolution) {
 /* Returns the force below which that of a contact has vanished with that of another one; 0 if none has opened. */
 static double vanishing_force(const struct Resolution *resolution) {
   bool any_opened = false;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++) any_opened |= resolution->was_opened[i] > 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) any_opened |= resolution->forced[i] == FORCED_OPEN;
   return any_opened ? vanishing_share * largest_contact_force(resolution) : 0.0;
 }
 
@@ -527,7 +526,7 @@ static size_t find_pulling(const struct Resolution *resolution) {
                       (resolution->occasion == IN_EXCHANGE && force <= 0.0);
     bool was_closed = resolution->first_mode[i] == mode_of(resolution, switches->contacts[i].mode);
     bool parts =
-        ((is_reached && was_closed && !resolution->jumped) || force < vanishing) && resolution->was_opened[i] == 0.0;
+        ((is_reached && was_closed && !resolution->jumped) || force < vanishing) && resolution->forced[i] == UNFORCED;
     if (!(force < 0.0) && !parts && !is_torn_apart(resolution, i)) continue;
     if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
     most = fmin(force, 0.0);
@@ -557,7 +556,7 @@ static const char *check_values(const struct Resolution *resolution) {
 
 /* Logs a contact that is penetrated by less than a rounded start value, which is fixed. False for others. */
 static bool report_fixed_start(const struct Resolution *resolution, size_t contact) {
-  bool is_undone = resolution->occasion == AT_START && resolution->takes_part[contact] < 0.0;
+  bool is_undone = resolution->occasion == AT_START && resolution->start_gap[contact] < 0.0;
   size_t fixed = is_undone ? find_moved_fixed(resolution) : lagrangian.coordinate_count;
   if (fixed == lagrangian.coordinate_count) return false;
   double start = resolution->state[fixed];
@@ -636,7 +635,7 @@ static const char *act_once(struct Resolution *resolution, bool *again) {
 static bool open_pulling(struct Resolution *resolution) {
   size_t pulling = find_pulling(resolution);
   if (pulling == resolution->switches->contact_count) return false;
-  resolution->was_opened[pulling] = 1.0;
+  resolution->forced[pulling] = FORCED_OPEN;
   set_contact(resolution, pulling, false);
   let_go(resolution);
   return true;

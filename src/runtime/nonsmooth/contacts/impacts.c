@@ -122,7 +122,7 @@ static bool are_crushed(const struct Resolution *resolution, const struct Contac
 static void report_impact(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   struct ContactImpulses impulses;
-  for (size_t i = 0; i < switches->friction_count; i++) resolution->takes_part[switches->contact_count + i] = 0.0;
+  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = LEFT_OUT;
   if (!contact_impulses_create(resolution, &impulses)) return;
   size_t row = find_fixed(&impulses), fastest = find_fastest(&impulses);
   bool is_fixed = row < impulses.contact_count, is_crushed = !is_fixed && are_crushed(resolution, &impulses);

@@ -71,7 +71,7 @@ static void mark_branches(struct Resolution *resolution) {
 }
 
 /*
- * Counts the combinations, and marks the frictions in question in takes_part. False if there are too many combinations,
+ * Counts the combinations, and lets the frictions in question take part. False if there are too many combinations,
  * or no friction is in question.
  */
 static bool begin_search(struct JamSearch *search) {
@@ -81,7 +81,7 @@ static bool begin_search(struct JamSearch *search) {
   search->friction = reverse_moving(resolution);
   for (size_t i = 0; i < switches->friction_count; i++) {
     bool is_tried = direction_of(resolution, i) == 0.0;
-    resolution->takes_part[switches->contact_count + i] = is_tried ? 1.0 : 0.0;
+    *part_of_friction(resolution, i) = is_tried ? TAKES_PART : LEFT_OUT;
     if (!is_tried) continue;
     search->friction = i;
     search->combinations *= 3;
@@ -99,7 +99,7 @@ static bool begin_search(struct JamSearch *search) {
 static void set_combination(struct Resolution *resolution, size_t combination) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
-    if (resolution->takes_part[switches->contact_count + i] == 0.0) continue;
+    if (*part_of_friction(resolution, i) == LEFT_OUT) continue;
     resolution_set_mode(resolution, switches->frictions[i].mode, (double)(combination % 3) - 1.0);
     combination /= 3;
   }
@@ -129,7 +129,7 @@ static bool combination_agrees(struct Resolution *resolution) {
     agrees = !is_tried_branch(resolution, i) ||
              mode_of(resolution, switches->branches[i].mode) * resolution->value[i] >= -resolution->error_bound[i];
   for (size_t i = 0; i < switches->friction_count && agrees; i++)
-    agrees = resolution->takes_part[switches->contact_count + i] == 0.0 || friction_agrees(resolution, i);
+    agrees = *part_of_friction(resolution, i) == LEFT_OUT || friction_agrees(resolution, i);
   return agrees;
 }
 
@@ -161,8 +161,7 @@ static void log_several(const struct JamSearch *search) {
 static void count_frictions(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++)
-    if (resolution->takes_part[switches->contact_count + i] != 0.0)
-      resolution->flips[friction_indicator(switches, i)] = 1.0;
+    if (*part_of_friction(resolution, i) != LEFT_OUT) resolution->flips[friction_indicator(switches, i)] = 1.0;
   for (size_t i = 0; i < switches->branch_count; i++)
     if (is_tried_branch(resolution, i)) resolution->flips[i] = 1.0;
 }

@@ -25,7 +25,7 @@ static bool sticks_sideways(const struct Resolution *resolution, size_t contact,
   return !slides;
 }
 
-/* Sets takes_part to 1 for open contacts that touch at rest, else 0. True if there are any beside a closed contact. */
+/* Lets open contacts take part that touch at rest. True if there are any beside a closed contact. */
 static bool find_idle(struct Resolution *resolution) {
   const struct Tolerances tolerances = tolerances_of(resolution);
   bool has_closed = false, is_idle = false;
@@ -34,7 +34,7 @@ static bool find_idle(struct Resolution *resolution) {
     bool touches = fabs(contact_value(resolution, i, CONTACT_GAP)) <= tolerances.touching;
     bool is_still = fabs(contact_value(resolution, i, CONTACT_RATE)) <= tolerances.rest;
     bool rests = !is_closed && touches && is_still && sticks_sideways(resolution, i, tolerances.rest);
-    resolution->takes_part[i] = rests ? 1.0 : 0.0;
+    resolution->part[i] = rests ? TAKES_PART : LEFT_OUT;
     has_closed |= is_closed;
     is_idle |= rests;
   }
@@ -46,7 +46,7 @@ static void close_idle(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++) {
     if (contact_is_closed(resolution, i)) set_contact(resolution, i, true);
-    if (resolution->takes_part[i] == 0.0) continue;
+    if (resolution->part[i] == LEFT_OUT) continue;
     set_contact(resolution, i, true);
     for (size_t f = 0; f < switches->friction_count; f++)
       if (rests_on(switches, f, i)) set_friction(resolution, f, 0.0);
@@ -59,7 +59,7 @@ static size_t find_useless(const struct Resolution *resolution) {
   double largest = largest_contact_force(resolution), least = INFINITY;
   for (size_t i = 0; i < count; i++) {
     double force = contact_force(resolution, i);
-    if (resolution->takes_part[i] == 0.0 || force > rounded_force * largest || force >= least) continue;
+    if (resolution->part[i] == LEFT_OUT || force > rounded_force * largest || force >= least) continue;
     least = force;
     found = i;
   }
@@ -68,7 +68,7 @@ static size_t find_useless(const struct Resolution *resolution) {
 
 static bool any_takes_part(const struct Resolution *resolution) {
   bool any = false;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++) any |= resolution->takes_part[i] != 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) any |= resolution->part[i] != LEFT_OUT;
   return any;
 }
 
@@ -90,7 +90,7 @@ static bool close_useful(struct Resolution *resolution) {
     close_idle(resolution);
     if (!resolution_evaluate(resolution)) return false;
     useless = find_useless(resolution);
-    if (useless < count) resolution->takes_part[useless] = 0.0;
+    if (useless < count) resolution->part[useless] = LEFT_OUT;
   } while (useless < count);
   return !any_is_in_tension(resolution);
 }

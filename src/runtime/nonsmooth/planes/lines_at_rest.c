@@ -23,14 +23,14 @@ void lines_choose(const struct Resolution *resolution) {
     if (is_in_plane(resolution->switches, i)) continue;
     bool rests = line_rests(resolution, i);
     *part_of_friction(resolution, i) = rests && friction_is_overcome(resolution, i) ? IS_OVERCOME
-                                       : rests                                      ? IS_AT_REST
-                                                                                    : 0.0;
+                                       : rests                                      ? TAKES_PART
+                                                                                    : LEFT_OUT;
   }
 }
 
 void lines_stick(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++) {
-    if (is_in_plane(resolution->switches, i) || *part_of_friction(resolution, i) == 0.0) continue;
+    if (is_in_plane(resolution->switches, i) || *part_of_friction(resolution, i) == LEFT_OUT) continue;
     if (*part_of_friction(resolution, i) == IS_OVERCOME)
       resolution->flips[friction_indicator(resolution->switches, i)]++;
     resolution_set_mode(resolution, resolution->switches->frictions[i].mode, 0.0);
@@ -40,8 +40,8 @@ void lines_stick(struct Resolution *resolution) {
 /* True if a friction along a line that sticks needs more than its stiction. */
 static bool line_exceeds(const struct Resolution *resolution, size_t friction, double rounding) {
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
-  double part = *part_of_friction(resolution, friction);
-  if (is_in_plane(resolution->switches, friction) || part == 0.0 || !friction_sticks(resolution, friction))
+  enum Part part = *part_of_friction(resolution, friction);
+  if (is_in_plane(resolution->switches, friction) || part == LEFT_OUT || !friction_sticks(resolution, friction))
     return false;
   double stiction = resolution->value[friction_slot(resolution->switches, friction, FRICTION_STICTION)];
   double force = resolution->acceleration[lagrangian.coordinate_count + metadata->constraint];

@@ -6,7 +6,7 @@
 
 #include "nonsmooth/planes/rest_forces.h"
 
-/* Sets takes_part of each friction along a line. */
+/* Sets the part of each friction along a line. */
 void lines_choose(const struct Resolution *resolution);
 
 /* Lets those that take part stick. */

@@ -60,21 +60,21 @@ static bool any_stops(const struct Resolution *resolution) {
 static bool rests_on_chosen(const struct Resolution *resolution, const struct PlaneState *state) {
   bool rests = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    rests |= resolution->takes_part[i] != 0.0 && rests_on(resolution->switches, state->metadata->along, i);
+    rests |= resolution->part[i] != LEFT_OUT && rests_on(resolution->switches, state->metadata->along, i);
   return rests;
 }
 
 /*
- * Selects the frictions at rest, in takes_part, and the contacts at rest if they may open and close. If one friction
+ * Selects the frictions at rest, by enum Part, and the contacts at rest if they may open and close. If one friction
  * stops, all slow ones may. Frictions of one body, such as those of a disk on many points, slow down and stop at the
  * same time.
  */
 static void choose_at_rest(struct Resolution *resolution, bool with_contacts) {
   bool may_stop = with_contacts || any_stops(resolution);
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    resolution->takes_part[i] = !with_contacts || !contact_is_at_rest(resolution, i) ? 0.0
-                                : contact_is_closed(resolution, i)                   ? WAS_CLOSED
-                                                                                     : WAS_OPEN;
+    resolution->part[i] = !with_contacts || !contact_is_at_rest(resolution, i) ? LEFT_OUT
+                          : contact_is_closed(resolution, i)                   ? TAKES_PART
+                                                                               : WAS_OPEN;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     bool stops = may_stop && state.mode != PLANE_STICKS && plane_is_slow(resolution, &state),
@@ -83,17 +83,17 @@ static void choose_at_rest(struct Resolution *resolution, bool with_contacts) {
          has_force = state.mode != PLANE_IS_FREE && state.has_force;
     bool rests = has_force ? stops || begins || sticks : !plane_moves(&state) && rests_on_chosen(resolution, &state);
     bool is_overcome = (begins && !stops && state.mode == PLANE_IMPENDS) || plane_is_overcome(resolution, &state);
-    *part_of_plane(resolution, &state) = state.is_given || !rests ? 0.0
+    *part_of_plane(resolution, &state) = state.is_given || !rests ? LEFT_OUT
                                          : stops                  ? IS_SLOW
                                          : is_overcome            ? IS_OVERCOME
-                                                                  : IS_AT_REST;
+                                                                  : TAKES_PART;
   }
   lines_choose(resolution);
 }
 
 /* Lets a friction slide on whose constraint cannot stop the motion. */
 static void let_pass(struct Resolution *resolution, const struct PlaneState *state, const double *direction) {
-  *part_of_plane(resolution, state) = 0.0;
+  *part_of_plane(resolution, state) = LEFT_OUT;
   if (plane_moves(state)) plane_slide(resolution, state);
   else plane_slip(resolution, state, direction);
 }
@@ -112,7 +112,7 @@ static void release_slow(struct Resolution *resolution) {
 static bool try_to_stick(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    if (*part_of_plane(resolution, &state) == 0.0) continue;
+    if (*part_of_plane(resolution, &state) == LEFT_OUT) continue;
     plane_stick(resolution, &state);
     plane_count_switch(resolution, &state);
   }
@@ -126,7 +126,7 @@ static bool bring_to_rest(struct Resolution *resolution, bool stops) {
   resolution_keep_modes(resolution);
   for (size_t i = 0; i < resolution->switches->plane_count && stops; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    if (*part_of_plane(resolution, &state) == 0.0 || plane_slides(&state)) continue;
+    if (*part_of_plane(resolution, &state) == LEFT_OUT || plane_slides(&state)) continue;
     plane_stick(resolution, &state);
     moves |= state.speed > 0.0;
   }
@@ -163,8 +163,8 @@ static bool all_stick(const struct Resolution *resolution) {
   double rounding = share_at_limit * largest_stiction(resolution);
   for (size_t i = 0; i < resolution->switches->plane_count && all; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    double part = *part_of_plane(resolution, &state);
-    if (part == 0.0 || state.mode != PLANE_STICKS) continue;
+    enum Part part = *part_of_plane(resolution, &state);
+    if (part == LEFT_OUT || state.mode != PLANE_STICKS) continue;
     double limit = state.stiction + (part == IS_OVERCOME ? -rounding : rounding);
     all = state.needed <= limit && !continues(resolution, &state) && !plane_is_unheld(resolution, &state);
   }
@@ -177,10 +177,10 @@ static void take_contacts(struct RestForces *forces) {
   for (size_t row = 0; row < forces->impulses.contact_count; row++) {
     size_t contact = forces->impulses.member[row];
     bool presses = forces->force[row] * forces->impulses.delassus[row * (forces->n + 1)] > forces->none;
-    bool stays = resolution->takes_part[contact] == WAS_CLOSED && forces->behind[row] <= forces->none;
+    bool stays = resolution->part[contact] == TAKES_PART && forces->behind[row] <= forces->none;
     if (presses) contact_carry(resolution, contact, forces->force[row]);
     else set_contact(resolution, contact, stays);
-    resolution->was_opened[contact] = presses || stays ? 0.0 : 1.0;
+    resolution->forced[contact] = presses || stays ? UNFORCED : FORCED_OPEN;
   }
 }
 
@@ -246,7 +246,7 @@ static bool take_rests(struct RestForces *forces) {
 static void release_others(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    bool rests = *part_of_plane(resolution, &state) != 0.0;
+    bool rests = *part_of_plane(resolution, &state) != LEFT_OUT;
     if (rests && !rest_is_unknown(resolution, state.metadata->along) && state.needed > state.stiction)
       plane_slip(resolution, &state, state.force);
   }
@@ -259,10 +259,10 @@ static void release_others(struct Resolution *resolution) {
 static void release_passing(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    double *part = part_of_plane(resolution, &state);
+    enum Part *part = part_of_plane(resolution, &state);
     bool passes = continues(resolution, &state);
     bool is_hopeless = *part == IS_SLOW && state.needed > hopeless * state.stiction;
-    if (*part != 0.0 && (passes || is_hopeless)) let_pass(resolution, &state, passes ? state.rate : state.force);
+    if (*part != LEFT_OUT && (passes || is_hopeless)) let_pass(resolution, &state, passes ? state.rate : state.force);
   }
 }
 
@@ -271,9 +271,9 @@ static bool let_slow_slide(struct RestForces *forces) {
   bool any = false;
   for (size_t row = forces->impulses.contact_count; row < forces->lines; row += 2) {
     struct PlaneState state = state_of_row(forces, row);
-    double *part = part_of_plane(forces->resolution, &state);
+    enum Part *part = part_of_plane(forces->resolution, &state);
     if (!rest_slips(forces, row) || *part != IS_SLOW || !plane_moves(&state)) continue;
-    *part = 0.0;
+    *part = LEFT_OUT;
     plane_slide(forces->resolution, &state);
     any = true;
   }

@@ -18,7 +18,7 @@ static double time_to_stop(struct Resolution *resolution, double *speed) {
   double longest = 0.0;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
-    if (*part_of_plane(resolution, &state) == 0.0 || state.mode == PLANE_STICKS) continue;
+    if (*part_of_plane(resolution, &state) == LEFT_OUT || state.mode == PLANE_STICKS) continue;
     if (state.speed > 0.0) longest = fmax(longest, state.speed / hypot(state.rate[0], state.rate[1]));
     *speed = fmax(*speed, state.speed / resolution->value[plane_slot(resolution->switches, i)]);
     plane_stick(resolution, &state);

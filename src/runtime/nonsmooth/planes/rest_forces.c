@@ -52,7 +52,7 @@ static size_t friction_of_row(const struct RestForces *forces, size_t row) {
 
 bool rest_is_unknown(const struct Resolution *resolution, size_t friction) {
   double sliding = resolution->value[friction_slot(resolution->switches, friction, FRICTION_FORCE)];
-  return *part_of_friction(resolution, friction) != 0.0 && sliding != 0.0;
+  return *part_of_friction(resolution, friction) != LEFT_OUT && sliding != 0.0;
 }
 
 static size_t lay_out_forces(struct RestForces *forces, void *block) {
@@ -73,7 +73,7 @@ static bool create_forces(struct RestForces *forces) {
   struct Resolution *resolution = forces->resolution;
   const struct SwitchTable *switches = resolution->switches;
   size_t contacts = 0, planes = 0, lines = 0;
-  for (size_t i = 0; i < switches->contact_count; i++) contacts += resolution->takes_part[i] != 0.0 ? 1 : 0;
+  for (size_t i = 0; i < switches->contact_count; i++) contacts += resolution->part[i] != LEFT_OUT ? 1 : 0;
   for (size_t i = 0; i < switches->plane_count; i++)
     planes += rest_is_unknown(resolution, switches->planes[i].along) ? 2 : 0;
   for (size_t i = 0; i < switches->friction_count; i++)
@@ -90,7 +90,7 @@ static bool create_forces(struct RestForces *forces) {
   lay_out_forces(forces, block);
   size_t row = 0;
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (resolution->takes_part[i] != 0.0) forces->impulses.member[row++] = i;
+    if (resolution->part[i] != LEFT_OUT) forces->impulses.member[row++] = i;
   for (size_t i = 0; i < switches->plane_count; i++) {
     size_t along = switches->planes[i].along;
     if (!rest_is_unknown(resolution, along)) continue;
@@ -111,7 +111,7 @@ static bool press_on_contacts(struct RestForces *forces) {
   forces->pressure = largest > 0.0 ? largest : 1.0;
   bool presses = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
-    if (resolution->takes_part[i] == 0.0) continue;
+    if (resolution->part[i] == LEFT_OUT) continue;
     contact_press(resolution, i, forces->pressure);
     presses = true;
   }

@@ -8,15 +8,6 @@
 static const double share_at_limit = 1e-9;
 
 /*
- * Values of resolution->takes_part for a friction at rest. IS_OVERCOME: at its limit it slips. IS_SLOW: it slid, and
- * continues with its velocity if it does not stick.
- */
-enum { IS_AT_REST = 1, IS_OVERCOME = 2, IS_SLOW = 3 };
-
-/* Values of resolution->takes_part for a contact whose force is unknown. */
-enum { WAS_CLOSED = 1, WAS_OPEN = 2 };
-
-/*
  * The unknown forces: a row for each contact, two for each friction in a plane, one for each along a line. The arrays of
  * frictions have an element, or a row of n, for each of their rows.
  */
@@ -34,12 +25,7 @@ struct RestForces {
   double none;                       /* accelerations that count as 0 */
 };
 
-/* Returns the element of takes_part of a friction. */
-static inline double *part_of_friction(const struct Resolution *resolution, size_t friction) {
-  return &resolution->takes_part[resolution->switches->contact_count + friction];
-}
-
-static inline double *part_of_plane(const struct Resolution *resolution, const struct PlaneState *state) {
+static inline enum Part *part_of_plane(const struct Resolution *resolution, const struct PlaneState *state) {
   return part_of_friction(resolution, state->metadata->along);
 }
 
