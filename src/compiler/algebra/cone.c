@@ -29,7 +29,7 @@ size_t cone_slot(const struct Cone *cone, Node node) {
  */
 static void add(struct Cone *cone, Node node) {
   if (cone_has(cone, node)) return;
-  cone->index[node] = cone->count;
+  cone->index[node] = (uint32_t)cone->count;
   cone->nodes[cone->count++] = node;
 }
 
@@ -55,14 +55,14 @@ static void sort(struct Cone *cone) {
   }
   if (cone->count == 0 || (last - first) / SPARSENESS > cone->count) {
     sort_nodes(cone->nodes, cone->count);
-    for (size_t i = 0; i < cone->count; i++) cone->index[cone->nodes[i]] = i;
+    for (uint32_t i = 0; i < cone->count; i++) cone->index[cone->nodes[i]] = i;
     return;
   }
-  size_t count = 0;
+  uint32_t count = 0;
   for (Node node = first; count < cone->count; node++) {
     /* Members below node are sorted, in nodes[0] to nodes[count - 1]; the others exchange places with them. */
     if (!cone_has(cone, node)) continue;
-    size_t index = cone->index[node];
+    uint32_t index = cone->index[node];
     Node other = cone->nodes[count];
     cone->nodes[index] = other;
     cone->index[other] = index;

@@ -10,7 +10,7 @@
 struct Cone {
   Node *nodes; /* ascending, so that operands come first */
   size_t count;
-  size_t *index; /* of each node of the graph, its index in nodes; see cone_has() */
+  uint32_t *index; /* of each node of the graph, its index in nodes; see cone_has() */
   size_t capacity;
   size_t work; /* steps of all sweeps so far, see graph_work() */
 };

@@ -50,6 +50,7 @@ static void write_words(FILE *file, const char *name, const struct WordList *wor
   fprintf(file, "static const uint32_t %s_code[] = {\n", name);
   for (size_t i = 0; i < words->count; i++) fprintf(file, i % 16 == 15 ? "%u,\n" : "%u,", words->items[i]);
   fputs("};\n", file);
+  release(words->items);
 }
 
 static void write_table(FILE *file, const struct Encoding *encoding, const char *name, const struct IrFunction *ir) {

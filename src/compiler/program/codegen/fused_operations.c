@@ -11,6 +11,12 @@ struct NeededNodes *needs_create(const struct Graph *graph) {
   return needs;
 }
 
+void needs_release(struct NeededNodes *needs) {
+  cone_release(needs->cone);
+  release(needs->uses);
+  release(needs);
+}
+
 static bool is_leaf(const struct Graph *graph, Node node) {
   return operation_arity(graph->vertices[node].operation) == 0;
 }

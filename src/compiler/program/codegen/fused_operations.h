@@ -32,8 +32,9 @@ struct NeededNodes {
   bool preparing; /* builds prepare(): expressions of parameters are computed, not fetched */
 };
 
-/* Returns an empty collection, which needs_collect() fills. */
+/* Returns an empty collection, which needs_collect() fills; needs_release() frees it. */
 struct NeededNodes *needs_create(const struct Graph *graph);
+void needs_release(struct NeededNodes *needs);
 
 /* Collects the nodes that the targets need, in place of those collected before. */
 void needs_collect(struct NeededNodes *needs, const Node *targets, size_t count, bool preparing);

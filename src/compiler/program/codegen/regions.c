@@ -136,6 +136,7 @@ static struct Region *open_region(struct Region **regions, size_t *count, Slot c
 static void close_region(struct SeparatedFunction *separated, struct Region *region) {
   if (region->ir.count < FEW_INSTRUCTIONS) {
     for (size_t i = 0; i < region->ir.count; i++) append(&separated->outer, region->ir.instructions[i]);
+    release(region->ir.instructions);
   } else {
     struct Instruction skip = {
         .opcode = SKIP, .result = (Slot)separated->region_count, .operands = {region->condition}};
@@ -161,6 +162,7 @@ static struct SeparatedFunction separate_part(const struct IrFunction *ir, const
     append(&separated.outer, *instruction);
   }
   for (size_t i = 0; i < open_count; i++) close_region(&separated, &open[i]); /* later parts have the guards */
+  release(open);
   return separated;
 }
 
@@ -168,4 +170,12 @@ void regions_separate(const struct IrFunction *ir, const size_t *ends, size_t co
   Slot *conditions = conditions_of(ir);
   for (size_t i = 0; i < count; i++) parts[i] = separate_part(ir, conditions, i > 0 ? ends[i - 1] : 0, ends[i]);
   release(conditions);
+}
+
+void regions_release(struct SeparatedFunction *parts, size_t count) {
+  for (size_t i = 0; i < count; i++) {
+    for (size_t j = 0; j < parts[i].region_count; j++) release(parts[i].regions[j].ir.instructions);
+    release(parts[i].outer.instructions);
+    release(parts[i].regions);
+  }
 }

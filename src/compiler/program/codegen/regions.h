@@ -31,5 +31,8 @@ void regions_find_rows(const struct IrFunction *order, Slot *row_conditions, siz
 /* Separates the regions of the consecutive parts of a function; ends: of each part. */
 void regions_separate(const struct IrFunction *ir, const size_t *ends, size_t count, struct SeparatedFunction *parts);
 
+/* Frees what regions_separate() allocates. */
+void regions_release(struct SeparatedFunction *parts, size_t count);
+
 /* Returns the number of instructions in regions. */
 size_t regions_length(const struct IrFunction *ir);

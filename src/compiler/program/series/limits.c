@@ -289,5 +289,8 @@ struct LimitChecks limits_of(struct SeriesBuilder *builder) {
   }
   if (guard_conditions != NULL) release(guard_conditions);
   find_covered(&list);
-  return take_rows(builder, &list);
+  struct LimitChecks checks = take_rows(builder, &list);
+  release(list.items);
+  release(list.first);
+  return checks;
 }

@@ -226,6 +226,7 @@ static struct IrFunction *resolve(struct Rows *rows) {
     Slot result = from->opcode == SERIES_SOLVE ? from->result : resolved(rows, from->result);
     ir_append(rows->order, from->opcode, result, operands[0], operands[1], operands[2]);
   }
+  release(is_used);
   return rows->order;
 }
 
@@ -317,6 +318,24 @@ static void copy_first(const struct Rows *rows, struct CodeGenerator *generator)
   }
 }
 
+/* Frees what only the construction of a program needs. */
+static void release_construction(struct SeriesBuilder *builder, const struct Rows *rows) {
+  release(rows->row);
+  release(rows->local);
+  release(rows->has_local);
+  release(rows->factor);
+  needs_release(builder->needs);
+  release(builder->order->instructions);
+  release(builder->order);
+  release(builder->nodes.nodes);
+  release(builder->is_computed);
+  release(builder->has_row);
+  release(builder->is_done);
+  release(builder->rate);
+  release(builder->inverse);
+  release(builder);
+}
+
 struct SeriesProgram *series_program_of_motion(const struct Expressions *expressions, const struct LoopedBlocks *blocks,
                                                struct CodeGenerator *generator) {
   const struct Equations *equations = expressions->equations;
@@ -346,6 +365,7 @@ struct SeriesProgram *series_program_of_motion(const struct Expressions *express
   }
   for (size_t i = 0; i < equations->rates.count; i++)
     generator_copy(generator, target_slot(2 * n + i), equations->rates.nodes[i]);
+  release_construction(builder, &rows);
   return program;
 }
 
@@ -380,6 +400,7 @@ struct SeriesProgram *series_program_of_outputs(const struct Expressions *expres
   compute_first(builder, generator, expressions->result, count);
   copy_first(&rows, generator);
   for (size_t i = 0; i < count; i++) generator_copy(generator, slot_at(SPACE_TARGET_ROW, i), expressions->result[i]);
+  release_construction(builder, &rows);
   return program;
 }
 
@@ -401,5 +422,6 @@ struct SeriesProgram *series_program_of_watched(const struct Expressions *expres
   copy_first(&rows, generator);
   for (size_t i = 0; i < forces; i++)
     ir_copy(program->start, slot_at(SPACE_ROW, rows.acceleration_row + i), slot_at(SPACE_ACCELERATION, i));
+  release_construction(builder, &rows);
   return program->limit.count > 0 ? program : NULL;
 }

@@ -134,6 +134,12 @@ static struct OrderedFunction ordered(const struct SeparatedFunction *function, 
   return result;
 }
 
+static void ordered_release(const struct OrderedFunction *function, size_t region_count) {
+  for (size_t i = 0; i < region_count; i++) ordered_release(&function->regions[i], 0);
+  release(function->outer.instructions);
+  release(function->regions);
+}
+
 /* Returns the word for the result, number 0, or for an operand of an instruction. */
 static uint32_t word_of(const struct Encoding *encoding, const struct Instruction *instruction, int number) {
   if (number > 0) return index_of(encoding, instruction->operands[number - 1]);
@@ -244,6 +250,7 @@ static void append_table(struct WordList *words, const struct Encoding *encoding
   number_locals(&function, numbers);
   append_runs(words, encoding, &function);
   append_word(words, END);
+  ordered_release(&function, part->region_count);
 }
 
 void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct WordList *words) {
@@ -252,6 +259,7 @@ void encode(const struct Encoding *encoding, const struct IrFunction *ir, struct
   struct Forms forms = forms_create(ir);
   struct LocalNumbers numbers = {.number = allocate(ir->local_count, sizeof *numbers.number)};
   append_table(words, encoding, &separated, &forms, &numbers);
+  regions_release(&separated, 1);
   release(numbers.number);
   forms_release(&forms);
 }
@@ -326,6 +334,8 @@ void encode_pair(const struct Encoding *encoding, const struct IrFunction *first
     if (ends[i] > (i > 0 ? ends[i - 1] : 0)) append_table(&words[i], encoding, &parts[i], &forms, &numbers);
     if (i == PAIR_END) numbers.count = common_locals; /* only one of the ends is run */
   }
+  regions_release(parts, PAIR_PARTS);
+  if (second != NULL) release(all.instructions);
   release(numbers.number);
   forms_release(&forms);
 }
