@@ -4,8 +4,9 @@
  *
  * A table is a sequence of runs. A run is an opcode, the number of its instructions, and the spaces of their operands;
  * for CALL and CALL_OF_TWO the index of the function follows. The results are equally spaced: the first one comes, and
- * the difference to the next. Then come the operands of each instruction. The opcode END ends the table. Results and
- * operands are indices in their spaces; in rows of series these count coefficients.
+ * the difference to the next. Then come the operands of the first instruction, and for each other one the differences to
+ * those before. The opcode END ends the table. Results and operands are indices in their spaces; in rows of series these
+ * count coefficients.
  *
  * SPACED, in the number of instructions, marks a run whose operands are equally spaced too. Of each the first one comes,
  * and the difference to the next.
@@ -62,7 +63,7 @@ typedef uint32_t Slot;
 enum { SLOT_BITS = 27, SPACE_BITS = 5 };
 
 /* In the number of instructions of a run, see above. */
-#define SPACED 0x80000000u
+#define SPACED 0x40000000
 
 /*
  * r is the result, a, b and c are the operands. Values are numbers. In instructions for series, k is the order, a_k a
@@ -170,10 +171,10 @@ struct Frame instructions_frame(const struct InstructionTables *tables, const st
 void instructions_seed(struct Frame *frame, const struct Seed *seed);
 
 /* Runs a table of values. Returns 0, or the number of the first check or factorization that fails. */
-int instructions_run(const struct Frame *frame, const uint32_t *code);
+int instructions_run(const struct Frame *frame, const int32_t *code);
 
 /* Runs a table of series at order k. */
-void instructions_run_order(const struct Frame *frame, const uint32_t *code, int k);
+void instructions_run_order(const struct Frame *frame, const int32_t *code, int k);
 
 /* A bound on the step: one function of series_limit.h with its arguments. */
 enum LimitRule {

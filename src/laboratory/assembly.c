@@ -43,7 +43,7 @@ static const struct Solver *solver_named(const char *name) {
   return NULL;
 }
 
-static const uint32_t *code_of(const struct Encoding *encoding, const struct IrFunction *ir) {
+static const int32_t *code_of(const struct Encoding *encoding, const struct IrFunction *ir) {
   struct WordList words = {0};
   if (ir == NULL) return NULL;
   encode(encoding, ir, &words);

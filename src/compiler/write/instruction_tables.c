@@ -47,8 +47,8 @@ void instruction_tables_shared(FILE *file, const struct Encoding *encoding) {
 }
 
 static void write_words(FILE *file, const char *name, const struct WordList *words) {
-  fprintf(file, "static const uint32_t %s_code[] = {\n", name);
-  for (size_t i = 0; i < words->count; i++) fprintf(file, i % 16 == 15 ? "%u,\n" : "%u,", words->items[i]);
+  fprintf(file, "static const int32_t %s_code[] = {\n", name);
+  for (size_t i = 0; i < words->count; i++) fprintf(file, i % 16 == 15 ? "%d,\n" : "%d,", words->items[i]);
   fputs("};\n", file);
   release(words->items);
 }

@@ -68,8 +68,8 @@ enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
  * operands, in their spaces. In series they are coefficients k; ROW_R and the like are whole rows.
  */
 #define EACH(size, ...)                                                                                                \
-  result = code[0];                                                                                                    \
-  next_result = code[1];                                                                                               \
+  result = (uint32_t)code[0];                                                                                          \
+  next_result = (uint32_t)code[1];                                                                                     \
   code += 2;                                                                                                           \
   if (is_spaced) {                                                                                                     \
     uint32_t index[] = {result, WORD(1, size, 0), WORD(2, size, 2), WORD(3, size, 4)};                                 \
@@ -80,13 +80,15 @@ enum { SPACE_MASK = (1 << SPACE_BITS) - 1 };
     }                                                                                                                  \
     code += 2 * (size)-2;                                                                                              \
   } else {                                                                                                             \
+    uint32_t first = 0, second = 0, third = 0;                                                                         \
     for (; count > 0; count--, code += (size)-1, result += next_result) {                                              \
-      const uint32_t index[] = {result, WORD(1, size, 0), WORD(2, size, 1), WORD(3, size, 2)};                         \
+      const uint32_t index[] = {result, first += WORD(1, size, 0), second += WORD(2, size, 1),                         \
+                                third += WORD(3, size, 2)};                                                            \
       __VA_ARGS__;                                                                                                     \
     }                                                                                                                  \
   }                                                                                                                    \
   break
-#define WORD(operand, size, number) ((operand) < (size) ? code[number] : 0)
+#define WORD(operand, size, number) ((operand) < (size) ? (uint32_t)code[number] : 0)
 #define R r[index[0]]
 #define A a[index[1]]
 #define B b[index[2]]
@@ -101,13 +103,13 @@ static inline uint32_t space_of_operand(uint32_t spaces, int number) {
   return spaces >> number * SPACE_BITS & SPACE_MASK;
 }
 
-int instructions_run(const struct Frame *frame, const uint32_t *code) {
+int instructions_run(const struct Frame *frame, const int32_t *code) {
   Real *const *base = frame->base;
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return 0;
     const bool is_spaced = (code[1] & SPACED) != 0;
-    uint32_t count = code[1] & ~SPACED, spaces = code[2], result, next_result;
+    uint32_t count = (uint32_t)(code[1] & ~SPACED), spaces = (uint32_t)code[2], result, next_result;
     Real *r = base[space_of_operand(spaces, 0)];
     const Real *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
     code += 3;
@@ -151,13 +153,13 @@ int instructions_run(const struct Frame *frame, const uint32_t *code) {
   }
 }
 
-void instructions_run_order(const struct Frame *frame, const uint32_t *code, int k) {
+void instructions_run_order(const struct Frame *frame, const int32_t *code, int k) {
   Real *const *base = frame->base;
   for (;;) {
     enum Opcode opcode = (enum Opcode)code[0];
     if (opcode == END) return;
     const bool is_spaced = (code[1] & SPACED) != 0;
-    uint32_t count = code[1] & ~SPACED, spaces = code[2], result, next_result;
+    uint32_t count = (uint32_t)(code[1] & ~SPACED), spaces = (uint32_t)code[2], result, next_result;
     const uint32_t space_r = space_of_operand(spaces, 0), space_a = space_of_operand(spaces, 1);
     const uint32_t space_b = space_of_operand(spaces, 2), space_c = space_of_operand(spaces, 3);
     Real *const row_r = base[space_r], *const r = row_r + (space_r >= SPACE_ROW ? k : 0);

@@ -77,14 +77,14 @@ size_t encoding_work_count(const struct Encoding *encoding) {
 }
 
 /* Returns the index of a slot in its space, in numbers; rows have SERIES_LENGTH numbers each. */
-static uint32_t index_of(const struct Encoding *encoding, Slot slot) {
+static int32_t index_of(const struct Encoding *encoding, Slot slot) {
   enum Space space = space_of(slot);
   size_t index = index_in(slot);
-  if (space == SPACE_NUMBER) return (uint32_t)encoding->number[index] - 1;
-  return (uint32_t)(space >= SPACE_ROW && space != SPACE_TIME_ROW ? index * SERIES_LENGTH : index);
+  if (space == SPACE_NUMBER) return (int32_t)encoding->number[index] - 1;
+  return (int32_t)(space >= SPACE_ROW && space != SPACE_TIME_ROW ? index * SERIES_LENGTH : index);
 }
 
-static void append_word(struct WordList *words, uint32_t word) {
+static void append_word(struct WordList *words, int32_t word) {
   APPEND(words->items, words->count, word);
 }
 
@@ -141,51 +141,54 @@ static void ordered_release(const struct OrderedFunction *function, size_t regio
 }
 
 /* Returns the word for the result, number 0, or for an operand of an instruction. */
-static uint32_t word_of(const struct Encoding *encoding, const struct Instruction *instruction, int number) {
+static int32_t word_of(const struct Encoding *encoding, const struct Instruction *instruction, int number) {
   if (number > 0) return index_of(encoding, instruction->operands[number - 1]);
-  return opcode_has_result(instruction->opcode) ? index_of(encoding, instruction->result) : instruction->result;
+  return opcode_has_result(instruction->opcode) ? index_of(encoding, instruction->result)
+                                                : (int32_t)instruction->result;
 }
 
 static void append_header(struct WordList *words, const struct Encoding *encoding,
                           const struct Instruction *instruction, size_t count, bool is_spaced) {
   enum Opcode opcode = instruction->opcode;
   append_word(words, opcode);
-  append_word(words, (uint32_t)count | (is_spaced ? SPACED : 0));
-  append_word(words, spaces_of(instruction));
+  append_word(words, (int32_t)count | (is_spaced ? SPACED : 0));
+  append_word(words, (int32_t)spaces_of(instruction));
   if (opcode == CALL || opcode == CALL_OF_TWO)
-    append_word(words, (uint32_t)encoding->function[instruction->function] - 1);
+    append_word(words, (int32_t)encoding->function[instruction->function] - 1);
+}
+
+/* Returns the difference of a word to that of the instruction before; of the first one the word. */
+static int32_t difference_of(const struct Encoding *encoding, const struct Instruction *run, size_t i, int number) {
+  int32_t word = word_of(encoding, &run[i], number);
+  return i > 0 ? word - word_of(encoding, &run[i - 1], number) : word;
 }
 
 /* Returns the number of instructions from the first on, up to count, whose first words are equally spaced. */
-static size_t spaced_count(const struct Encoding *encoding, const struct Instruction *instructions, size_t count,
-                           int words) {
+static size_t spaced_count(const struct Encoding *encoding, const struct Instruction *run, size_t count, int words) {
   size_t length = count < 2 ? count : 2;
   for (; length >= 2 && length < count; length++)
     for (int j = 0; j < words; j++)
-      if (word_of(encoding, &instructions[length], j) - word_of(encoding, &instructions[length - 1], j) !=
-          word_of(encoding, &instructions[1], j) - word_of(encoding, &instructions[0], j))
-        return length;
+      if (difference_of(encoding, run, length, j) != difference_of(encoding, run, 1, j)) return length;
   return length;
 }
 
 /* Appends a word of the first of count instructions, and its difference to that of the next. */
-static void append_spaced_word(struct WordList *words, const struct Encoding *encoding,
-                               const struct Instruction *instructions, size_t count, int number) {
-  uint32_t first = word_of(encoding, &instructions[0], number);
-  append_word(words, first);
-  append_word(words, count > 1 ? word_of(encoding, &instructions[1], number) - first : 0);
+static void append_spaced_word(struct WordList *words, const struct Encoding *encoding, const struct Instruction *run,
+                               size_t count, int number) {
+  append_word(words, difference_of(encoding, run, 0, number));
+  append_word(words, count > 1 ? difference_of(encoding, run, 1, number) : 0);
 }
 
 /* Appends instructions whose operands are not equally spaced, as runs whose results are. */
 static void append_listed(struct WordList *words, const struct Encoding *encoding,
                           const struct Instruction *instructions, size_t count) {
   for (size_t first = 0, length; first < count; first += length) {
-    length = spaced_count(encoding, instructions + first, count - first, 1);
-    append_header(words, encoding, instructions, length, false);
-    append_spaced_word(words, encoding, instructions + first, length, 0);
-    for (size_t i = first; i < first + length; i++)
-      for (int j = 1; j <= opcode_arity(instructions->opcode); j++)
-        append_word(words, word_of(encoding, &instructions[i], j));
+    const struct Instruction *run = instructions + first;
+    length = spaced_count(encoding, run, count - first, 1);
+    append_header(words, encoding, run, length, false);
+    append_spaced_word(words, encoding, run, length, 0);
+    for (size_t i = 0; i < length; i++)
+      for (int j = 1; j <= opcode_arity(run->opcode); j++) append_word(words, difference_of(encoding, run, i, j));
   }
 }
 
@@ -236,11 +239,11 @@ static void append_region(struct WordList *words, const struct Encoding *encodin
   append_word(words, SKIP);
   size_t length = words->count;
   append_word(words, 0);
-  append_word(words, spaces_of(skip));
+  append_word(words, (int32_t)spaces_of(skip));
   append_word(words, index_of(encoding, skip->operands[0]));
   size_t first = words->count;
   append_runs(words, encoding, region);
-  words->items[length] = (uint32_t)(words->count - first);
+  words->items[length] = (int32_t)(words->count - first);
 }
 
 /* Appends a part of a function as a table, whose local variables are numbered from numbers->count on. */
@@ -356,7 +359,7 @@ struct IrTables encode_all(const struct Encoding *encoding, struct IrFunction *c
 }
 
 static Slot encoded(const struct Encoding *encoding, Slot slot) {
-  return slot_at(space_of(slot), index_of(encoding, slot));
+  return slot_at(space_of(slot), (size_t)index_of(encoding, slot));
 }
 
 struct LimitCheck encoded_check(const struct Encoding *encoding, const struct LimitCheck *check) {

@@ -20,7 +20,7 @@ size_t encoding_work_count(const struct Encoding *encoding);
 
 /* The words of consecutive tables. */
 struct WordList {
-  uint32_t *items;
+  int32_t *items;
   size_t count;
 };
 
