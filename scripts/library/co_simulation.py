@@ -11,6 +11,7 @@ step contains one. Bisection, with the step repeated from a saved state, locates
 
 import itertools
 import shutil
+import time as clock
 import warnings
 from ctypes import byref
 
@@ -28,6 +29,7 @@ EVENTS = "events"  # variable of the FMU that counts events
 NEAR = 1e-9  # times that differ by less, relative to a step, are equal
 FOUND = 1e-10  # accuracy of the time of an event, relative to a step
 EVENT_ROWS = 20  # events of a step that are located; further ones have no rows
+LONGEST_SEARCH = 10.0  # s of computation for all events of a run, after which further ones have no rows
 OPTIONS = ("start_time", "stop_time", "output_interval", "relative_tolerance", "record_events", "logger", "debug_logging", "visible", "fmi_call_logger")
 
 
@@ -95,6 +97,7 @@ class Slave2(Slave):
         self.counter = [counter.valueReference] if counter is not None else None
         self.states = []
         self.is_looking = False  # True while events are located, when log messages are repetitions
+        self.searched = 0.0  # s of computation
 
     def enter_initialization(self, start, stop, tolerance):
         self.fmu.setupExperiment(tolerance=tolerance, startTime=start, stopTime=stop)
@@ -125,7 +128,7 @@ class Slave2(Slave):
         if not self.follows and piece is not None:
             self.set(value(piece, end - begin))
         elif saved is not None and self.events() > count:
-            self.find_events(saved, count, begin, end, record)
+            self.find_in_time(saved, count, begin, end, record)
 
     def follow(self, piece):
         """Set polynomial inputs, by their derivatives that are not 0."""
@@ -152,6 +155,18 @@ class Slave2(Slave):
     def free(self):
         for state in self.states:
             self.fmu.freeFMUstate(state)
+
+    def find_in_time(self, state, count, begin, end, record):
+        """Find events as below, until that has taken too long: it repeats a step some 30 times for each event."""
+        started = clock.perf_counter()
+        self.find_events(state, count, begin, end, record)
+        self.searched += clock.perf_counter() - started
+        if self.searched > LONGEST_SEARCH:
+            self.can_find = False
+            warnings.warn(
+                f"events after {end:g} s have no rows, as it takes too long to find their times; expected --fmi 3 (fmi=3), with which the FMU stops at them, "
+                "or --no-events (record_events=False)", stacklevel=2,
+            )  # fmt: skip
 
     def find_events(self, state, count, begin, end, record):
         """Add rows for the events of the step that the FMU has just done from `state`; leave the FMU at the end of the step."""

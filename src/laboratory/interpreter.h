@@ -20,7 +20,7 @@ struct Interpreter {
   struct InstructionTables tables;
   /* the instruction table of each function; of a series: the table for the coefficients of order 0 */
   const int32_t *code[FUNCTION_COUNT];
-  const int32_t *order[FUNCTION_COUNT];              /* of a series: the table for the coefficients of order k */
+  const int32_t *order[FUNCTION_COUNT];               /* of a series: the table for the coefficients of order k */
   struct IrTables results, results_along;             /* from encode_all() */
   double *values;                                     /* workspace for the targets of a table of results */
   size_t coordinate_count, parameter_constants_count; /* the latter without the local variables of prepare() */

@@ -49,6 +49,14 @@ def test_bounces(of):
     assert even["time"].tolist() == np.arange(0, 2.1, 0.25).tolist() and motion[others].tobytes() == even.tobytes()
 
 
+def test_searches_end(monkeypatch):
+    """Once they have taken too long, a warning says so, and further events have no rows: here after the step with the first one, at 0.4515 s."""
+    monkeypatch.setattr("scripts.library.co_simulation.LONGEST_SEARCH", 0.0)
+    with pytest.warns(UserWarning, match=r"^events after 0\.5 s have no rows, .*; expected --fmi 3 \(fmi=3\), with which the FMU stops at them"):
+        motion = simulate(fmu.archive("BouncingBall"), {"h": 1.0, "e": 0.8}, stop_time=2.0, output_interval=0.25).outputs
+    assert np.flatnonzero(np.diff(motion["time"]) == 0).size == 1 and len(motion) == 9 + 2
+
+
 @pytest.mark.parametrize("of", [fmu, fmi3])
 def test_a_force_that_switches(of):
     """At 0.35 s the acceleration changes from 1 to -3; the velocity is 0.35 in both rows."""

@@ -23,7 +23,9 @@ LEGGED = """<robot name="legged"><link name="trunk">{INERTIAL}</link><link name=
   <joint name="knee" type="revolute"><origin xyz="0 0 -0.5"/><parent link="upper"/><child link="lower"/><axis xyz="1 0 0"/>
     <limit lower="-1" upper="1"/><mimic joint="hip" multiplier="2" offset="0.1"/></joint></robot>""".replace("{INERTIAL}", INERTIAL)
 SYSTEM = '<system name="{}"><include file="legged.urdf" as="r" base="floating" ground="true">{}</include></system>'
-BENT = '<coordinate name="hip" start="0.3"/>'
+BENT = '<coordinate name="hip" start="0.6/2"/>'
+# A quarter turn about x and a third of one about z.
+ROTATED = BENT + '<coordinate name="base_qw" start="0.5"/><coordinate name="base_qx" start="sqrt(0.5)"/><coordinate name="base_qy" start="-0.3"/><coordinate name="base_qz" start="0.4"/>'
 FORCE = "r.lower_ground1.force"
 
 
@@ -31,7 +33,7 @@ FORCE = "r.lower_ground1.force"
 def built():
     texts, files = {}, {}
     for shape, text in SHAPES.items():
-        for name, start in ((f"Legged{shape}", ""), (f"Bent{shape}", BENT)):
+        for name, start in ((f"Legged{shape}", ""), (f"Bent{shape}", BENT), (f"Rotated{shape}", ROTATED)):
             texts[name] = SYSTEM.format(name, start)
             files |= {f"{name}/legged.urdf": LEGGED.format(text), f"{name}/cube.stl": stl_text(CUBE, triangles_of(CUBE))}
     build_systems("heights-of-robots", texts, files=files)
@@ -46,12 +48,12 @@ def force_at(name, height=None):
         instance.free()
 
 
-@pytest.mark.parametrize("kind", ["Legged", "Bent"])
+@pytest.mark.parametrize("kind", ["Legged", "Bent", "Rotated"])
 @pytest.mark.parametrize("shape", SHAPES)
 def test_the_lowest_shape_stands_on_the_ground(kind, shape):
     """It does not press, and does 0.2 mm lower: the height is rounded up to 0.1 mm."""
     force, height = force_at(kind + shape)
-    assert force == 0 and height > 0.5
+    assert force == 0 and height != 0
     assert force_at(kind + shape, height - 2e-4)[0] > 0
 
 
@@ -92,3 +94,48 @@ def test_warnings_of_links_below_the_ground(options, message, tmp_path):
     (tmp_path / "system.xml").write_text(f'<system name="Told"><include file="legged.urdf" as="r" {options}>{start}</include></system>')
     result = lagc("system.xml", "-o", "out", cwd=tmp_path)
     assert result.returncode == 0 and message in result.stderr and "note:" not in result.stderr
+
+
+def check_robot(tmp_path, robot, name, options, content=""):
+    """Return the messages of lagc about a file of a robot in a system."""
+    (tmp_path / name).write_text(robot)
+    (tmp_path / "system.xml").write_text(f'<system name="Told"><include file="{name}" as="r" {options}>{content}</include></system>')
+    return lagc("system.xml", "-o", "out", cwd=tmp_path).stderr
+
+
+FLAT = f'''<robot name=""><link name="plate">{INERTIAL}<collision><origin xyz="0 0 {{}}"/><geometry><box size="1 1 0.1"/></geometry></collision></link></robot>'''
+
+
+def test_a_robot_above_the_ground_is_lowered(tmp_path):
+    assert "base_z = -0.75, where the link 'plate' stands" in check_robot(tmp_path, FLAT.format(0.8), "flat.urdf", 'base="floating" ground="true"')
+
+
+def test_copies_have_their_own_heights(tmp_path):
+    """The second plate is turned by 2 acos(0.6) about x, whose cosine is -0.28 and sine 0.96: 0.28 0.05 + 0.96/2 = 0.494."""
+    second = '</include><include file="flat.urdf" as="s" base="floating" ground="true"><coordinate name="base_qw" start="0.6"/><coordinate name="base_qx" start="0.8"/>'
+    report = check_robot(tmp_path, FLAT.format(0), "flat.urdf", 'base="floating" ground="true"', second)
+    assert "base_z = 0.05," in report and "base_z = 0.494," in report
+
+
+def test_starts_that_do_not_count(tmp_path):
+    report = check_robot(tmp_path, LEGGED.format(SHAPES["Box"]), "legged.urdf", 'base="floating" ground="true"', '<parameter name="g" start="9"/><coordinate name="hip" start="g/30"/>')
+    assert "(the start of 'hip' is no number, and not counted)" in report
+
+
+@pytest.mark.parametrize(
+    "robot, name, options, content, message",
+    [
+        (f'<robot><link name="plate">{INERTIAL}</link></robot>', "robot.urdf", 'base="floating" ground="true"', "", "robot.urdf:1: warning: nothing of the robot touches the ground"),
+        (LEGGED.format(SHAPES["Box"]), "robot.urdf", 'base="floating" limits="stops"', '<coordinate name="hip" start="0.5"/>', ""),
+        (LEGGED.format(SHAPES["Box"]).replace('type="continuous"', 'type="revolute"').replace('<axis xyz="0 1 0"/>', '<axis xyz="0 1 0"/><limit lower="-1" upper="0.25"/>'),
+         "robot.urdf", 'limits="stops"', '<coordinate name="hip" start="0.5"/>', "the start of the joint 'hip' is 0.5, beyond its stops, where the simulation cannot begin; expected one from -1 to 0.25"),
+        ('<robot name="r"><link name="world"/><link name="b">' + INERTIAL + '</link><joint name="j" type="continuous"><parent link="world"/><child link="b"/></joint></robot>',
+         "robot.urdf", 'base="floating"', "", "the root link 'world' moves freely, and has no mass; expected an <inertial> in it, or no base=\"floating\""),
+        (f'<robot name="r"><link name="b">{INERTIAL.replace("1", "0", 1)}</link></robot>'.replace('value="0"', 'value="0"'), "robot.urdf", 'base="floating"', "", "the link 'b' moves freely, and has no mass; expected a <mass> above 0"),
+        ('<mujoco><worldbody><geom type="plane" size="1 1 1" pos="0 0 0.3"/><body name="b" pos="0 0 0.5"><freejoint/><geom type="box" size="0.1 0.1 0.4"/></body></worldbody></mujoco>',
+         "robot.xml", 'ground="true"', "", "the link 'b' is 0.2 m below the ground at the start"),
+    ],
+)  # fmt: skip
+def test_messages(robot, name, options, content, message, tmp_path):
+    report = check_robot(tmp_path, robot, name, options, content)
+    assert message in report if message else "beyond its stops" not in report

@@ -16,27 +16,55 @@ char *robot_own_start(const struct RobotOptions *options, const char *coordinate
   return node != NULL ? attribute(node, "start") : NULL;
 }
 
-/* Returns the start position of a joint: that of the <include> if it is a number, or what follows from its leader's. */
-static double start_of(const struct RobotJoint *joint, const struct RobotOptions *options) {
-  const struct RobotJoint *leader = joint->leader;
-  const char *own = robot_own_start(options, leader->symbol);
-  double start = leader->start.position[0], given;
-  if (own != NULL && parse_numbers(own, 1, &given) == 1) start = given;
-  return joint->ratio * start + joint->shift;
+/* The starts that the <include> gives. uncounted: the coordinate of one that is no expression of numbers; NULL for none. */
+struct Starts {
+  const struct RobotOptions *options;
+  const char *uncounted;
+};
+
+/* Sets the value to the start of a coordinate if the <include> gives one. */
+static void take_start(struct Starts *starts, const char *coordinate, double *value) {
+  char *own = robot_own_start(starts->options, coordinate);
+  if (own != NULL && !starts->options->value_of(own, value)) starts->uncounted = copy_text(coordinate);
 }
 
-/* Returns the placements of all links in the frame of the root, by their index. */
-static struct Placement *placements_of(const struct Robot *robot, const struct RobotOptions *options) {
+/* Returns the joint at its start, for placement_at_start(). */
+static struct RobotJoint joint_at_start(const struct RobotJoint *joint, struct Starts *starts) {
+  struct RobotJoint moved = *joint;
+  double *start = moved.start.position;
+  bool has_quaternion = start[3] != 0 || start[4] != 0 || start[5] != 0 || start[6] != 0;
+  if (joint_is_single(joint)) {
+    double leading = joint->leader->start.position[0];
+    take_start(starts, joint->leader->symbol, &leading);
+    start[0] = joint->ratio * leading + joint->shift;
+  } else if ((joint->type == BALL || joint->type == FLOATING) && has_quaternion) moved.type = FLOATING;
+  else if (joint->type != PRESCRIBED) moved.type = FIXED;
+  return moved;
+}
+
+/* Returns the placement of a floating base at the height 0. */
+static struct Placement base_placement(struct Starts *starts) {
+  struct Placement placement = no_displacement;
+  double quaternion[4] = {1, 0, 0, 0};
+  static const char *const names[] = {"base_qw", "base_qx", "base_qy", "base_qz"};
+  for (int i = 0; i < 4; i++) take_start(starts, names[i], &quaternion[i]);
+  bool is_rotation = quaternion[0] != 0 || quaternion[1] != 0 || quaternion[2] != 0 || quaternion[3] != 0;
+  if (is_rotation) placement.rotation = rotation_of_quaternion(quaternion);
+  return placement;
+}
+
+/* Returns the placements of all links in the frame of the ground, by their index. */
+static struct Placement *placements_of(const struct Robot *robot, struct Starts *starts) {
   struct Placement *placements = allocate(robot->link_count, sizeof *placements);
+  const struct Placement *ground = robot->ground != NULL ? &robot->ground->placement : &no_displacement;
+  const struct Placement base = starts->options->floats ? base_placement(starts) : no_displacement;
   for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) {
     struct Placement *placement = &placements[robot_link_index(robot, link->name)];
-    *placement = no_displacement;
+    *placement = placement_between(ground, &base);
     if (link->joint == NULL) continue;
-    struct RobotJoint moved = *link->joint;
-    if (joint_is_single(&moved)) moved.start.position[0] = start_of(link->joint, options);
-    else moved.type = FIXED; /* others start where they are placed */
-    struct Placement inner = placement_at_start(&moved);
-    *placement = placement_within(&placements[robot_link_index(robot, moved.parent->name)], &inner);
+    struct RobotJoint joint = joint_at_start(link->joint, starts);
+    struct Placement inner = placement_at_start(&joint);
+    *placement = placement_within(&placements[robot_link_index(robot, joint.parent->name)], &inner);
   }
   return placements;
 }
@@ -57,21 +85,23 @@ static double lowest_point(const struct Placement *link, const struct Collision 
   return placement.translation[2] - depth;
 }
 
-/* The lowest point below the plane z = 0 of the links that touch it, with a floating base at 0; link: NULL for none. */
+/* The lowest point above the ground of the links that touch it; link: NULL for none. */
 struct LowestPoint {
   const struct RobotLink *link;
   double height;
 };
 
-static struct LowestPoint lowest_of(const struct Robot *robot, const struct RobotOptions *options) {
-  const struct Placement *placements = placements_of(robot, options);
-  struct LowestPoint lowest = {NULL, 0};
+static struct LowestPoint lowest_of(const struct Robot *robot, struct Starts *starts) {
+  const struct Placement *placements = placements_of(robot, starts);
+  struct LowestPoint lowest = {NULL, INFINITY};
   for (const struct RobotLink *link = robot->root; link != NULL; link = link->next)
     for (size_t i = 0; i < link->collision_count; i++) {
       const struct Collision *shape = &link->collisions[i];
+      bool is_known = strcmp(shape->type, "plane") != 0 && (shape->file == NULL || shape->corner_count > 0);
+      bool touches = carrier_moves(link, starts->options->floats) && meets_ground(starts->options, link, shape);
+      if (!touches || !is_known) continue;
       double height = lowest_point(&placements[robot_link_index(robot, link->name)], shape);
-      bool touches = carrier_moves(link, options->floats) && meets_ground(options, link, shape);
-      if (touches && height < lowest.height) lowest = (struct LowestPoint){link, height};
+      if (height < lowest.height) lowest = (struct LowestPoint){link, height};
     }
   return lowest;
 }
@@ -86,20 +116,40 @@ static void warn_of_depth(const struct LowestPoint *lowest, double depth, const 
                    remedy);
 }
 
+/* Notes the height of a floating base. */
+static void note_height(const struct Robot *robot, const struct LowestPoint *lowest, const struct Starts *starts,
+                        double height, const struct Diagnostics *diagnostics) {
+  const char *uncounted = starts->uncounted;
+  report_note(diagnostics, robot->line,
+              "the base starts at base_z = %g, where the link '%s' stands on the ground%s; for other starts of joints "
+              "give <coordinate name=\"base_z\" start=\"...\"/> in an <include>, or base_z=... on the command line",
+              height, lowest->link->name,
+              uncounted != NULL ? format_text(" (the start of '%s' is no number, and not counted)", uncounted) : "");
+}
+
+/* True if a link that moves has shapes. */
+static bool has_shapes(const struct Robot *robot, const struct RobotOptions *options) {
+  bool has = false;
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next)
+    has |= carrier_moves(link, options->floats) && link->collision_count > 0;
+  return has;
+}
+
 double robot_start_height(const struct Robot *robot, const struct RobotOptions *options,
                           const struct Diagnostics *diagnostics) {
-  const struct LowestPoint lowest = lowest_of(robot, options);
-  double start = ceil(-1e4 * lowest.height) / 1e4, given;
+  struct Starts starts = {.options = options};
+  const struct LowestPoint lowest = lowest_of(robot, &starts);
   char *own = robot_own_start(options, "base_z");
+  double given;
+  if (lowest.link == NULL && !has_shapes(robot, options))
+    report_warning(diagnostics, robot->line,
+                   "nothing of the robot touches the ground; expected a <collision> or <geom> of a link that moves");
   if (lowest.link == NULL) return 0;
+  double height = options->floats ? ceil(-1e4 * lowest.height) / 1e4 : 0;
   if (!options->floats)
     warn_of_depth(&lowest, -lowest.height, "other start values, or links without it in ground=\"...\"", diagnostics);
-  else if (own != NULL && parse_numbers(own, 1, &given) == 1)
-    warn_of_depth(&lowest, start - given, format_text("start=\"%g\" of base_z, or above", start), diagnostics);
-  else if (own == NULL)
-    report_note(diagnostics, robot->line,
-                "the base starts at base_z = %g, where the link '%s' stands on the ground; another height is "
-                "<coordinate name=\"base_z\" start=\"...\"/> in an <include>, or base_z=... on the command line",
-                start, lowest.link->name);
-  return options->floats ? start : 0;
+  else if (own == NULL) note_height(robot, &lowest, &starts, height, diagnostics);
+  else if (options->value_of(own, &given))
+    warn_of_depth(&lowest, height - given, format_text("start=\"%g\" of base_z, or above", height), diagnostics);
+  return height;
 }

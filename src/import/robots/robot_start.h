@@ -1,4 +1,4 @@
-/* The height at which a robot without one in its file starts on the ground. */
+/* The height at which a floating base starts on the ground. */
 #pragma once
 
 #include "base/diagnostics.h"
@@ -6,9 +6,9 @@
 #include "robots/description/robot_options.h"
 
 /*
- * Returns the start of a floating base along z, in m: the least one, at 0 or above, without a shape below the ground,
- * the plane z = 0. It is rounded up to 0.1 mm. The <include> may give starts of joints as numbers. Notes the height
- * unless the <include> gives one itself. Warns of links below the ground by that, or on a fixed base.
+ * Returns the start of a floating base along z, in m, at which its lowest shape stands on the ground, the plane z = 0. It
+ * is rounded up to 0.1 mm; 0 for a fixed base. Starts in the <include> count if they are expressions of numbers. Notes
+ * the height unless the <include> gives one. Warns of links below the ground by that, or on a fixed base.
  */
 double robot_start_height(const struct Robot *robot, const struct RobotOptions *options,
                           const struct Diagnostics *diagnostics);

@@ -197,7 +197,12 @@ static void check_motion(const struct Robot *robot, bool floats, struct Diagnost
         "or --base floating on the command line");
   else if (floats && !robot->root->moves_inertia)
     report_error(diagnostics, robot->line, "no link of the robot has a mass; expected an <inertial> in one of them");
-  else if (floats) robot_check_moments(robot, robot->root, robot->line, diagnostics);
+  else if (floats && !body_has_inertia(&robot->root->carried) && moving_children(robot, robot->root) == 1)
+    report_error(diagnostics, robot->line,
+                 "the root link '%s' moves freely, and has no mass; expected an <inertial> in it, or no "
+                 "base=\"floating\"",
+                 robot->root->name);
+  else if (floats) robot_check_moments(robot, robot->root, true, robot->line, diagnostics);
 }
 
 /* Counts joints or tendons with a property; holds the first of them. */
@@ -218,9 +223,8 @@ static void warn_of_limits(const struct Diagnostics *diagnostics, const struct P
   size_t others = common->count - 1;
   const char *and = others > 0 ? format_text(" and of %zu other%s", others, others > 1 ? "s" : "") : "";
   report_warning(diagnostics, common->line,
-                 "%s of the %s '%s'%s; expected %s in an <include>, or --%s on the "
-                 "command line",
-                 what, common->kind, common->name, and, attribute, option);
+                 "%s of the %s '%s'%s; expected %s in an <include>, or %s on the command line", what, common->kind,
+                 common->name, and, attribute, option);
 }
 
 /* Rotates a quaternion or its rate by an angle about a unit vector: the product from the left. */
@@ -256,19 +260,35 @@ static bool limit_start(struct RobotJoint *joint) {
   return *start != before;
 }
 
+/* Warns of a start in the <include> that is beyond a stop. */
+static void check_own_start(const struct RobotJoint *joint, const char *own, const struct RobotOptions *options,
+                            const struct Diagnostics *diagnostics) {
+  double start;
+  bool is_own = joint_is_single(joint) && joint->leader == joint && own != NULL && options->value_of(own, &start);
+  if (is_own && (start < joint->lower || start > joint->upper))
+    report_warning(
+        diagnostics, joint->line,
+        "the start of the joint '%s' is %g, beyond its stops, where the simulation cannot begin; expected one "
+        "from %g to %g",
+        joint->name, start, joint->lower, joint->upper);
+}
+
 /* Moves starts beyond stops to these, with a warning unless the <include> gives another start. */
-static void limit_starts(const struct Robot *robot, const struct RobotOptions *options,
+static void limit_starts(const struct Robot *robot, const struct RobotOptions *options, bool is_mjcf,
                          const struct Diagnostics *diagnostics) {
   struct PropertyCount starts = {.count = 0};
   for (size_t i = 0; i < robot->joint_count && options->has_stops; i++) {
     struct RobotJoint *joint = robot->joints[i];
     const char *coordinate = joint->type == BALL ? format_text("%s_qw", joint->symbol) : joint->symbol;
-    if (limit_start(joint) && robot_own_start(options, coordinate) == NULL)
-      count_one(&starts, "joint", joint->name, joint->line);
+    const char *own = robot_own_start(options, coordinate);
+    check_own_start(joint, own, options, diagnostics);
+    if (limit_start(joint) && own == NULL) count_one(&starts, "joint", joint->name, joint->line);
   }
   warn_of_limits(diagnostics, &starts, false, "limits replace the start values, which are beyond them,",
                  "<coordinate name=\"...\" start=\"...\"/>",
-                 options->keyframe != NULL ? "keyframe with another name" : "keyframe NAME");
+                 !is_mjcf                    ? "JOINT=VALUE"
+                 : options->keyframe != NULL ? "--keyframe with another name"
+                                             : "--keyframe NAME");
 }
 
 /* Warns of limits, frictions and efforts without a word of the <include>. */
@@ -288,11 +308,11 @@ static void check_limits(const struct Robot *robot, const struct RobotOptions *o
     if (tendon->friction > 0) count_one(&frictions, "tendon", tendon->name, tendon->line);
   }
   warn_of_limits(diagnostics, &ranges, options->says_limits, "motion is not stopped at the limits",
-                 "limits=\"stops\", or \"outputs\" if this is meant,", "limits stops");
+                 "limits=\"stops\", or \"outputs\" if this is meant,", "--limits stops");
   warn_of_limits(diagnostics, &frictions, options->says_friction, "creep replaces sticking by the friction",
-                 "friction=\"sticks\", or \"creeps\" if this is meant,", "friction sticks");
+                 "friction=\"sticks\", or \"creeps\" if this is meant,", "--friction sticks");
   warn_of_limits(diagnostics, &efforts, options->says_effort, "motors may exceed the effort",
-                 "effort=\"limited\", or \"unlimited\" if this is meant,", "effort limited");
+                 "effort=\"limited\", or \"unlimited\" if this is meant,", "--effort limited");
 }
 
 /* Returns the links that can touch the ground, for messages; "none" without any. */
@@ -343,8 +363,8 @@ xmlDocPtr system_of_robot(xmlDocPtr document, const struct RobotOptions *given, 
   }
   if (diagnostics->errors == errors) {
     check_limits(robot, options, diagnostics);
-    limit_starts(robot, options, diagnostics);
-    if (!is_mjcf && options->has_ground) height = robot_start_height(robot, options, diagnostics);
+    limit_starts(robot, options, is_mjcf, diagnostics);
+    if (options->has_ground) height = robot_start_height(robot, options, diagnostics);
     if (!is_mjcf) find_pairs(robot, options, diagnostics);
   }
   xmlFreeDoc(document);

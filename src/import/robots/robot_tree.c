@@ -317,12 +317,11 @@ static void connect_loops(struct Connection *connection) {
     }
 }
 
-/* True if a joint of the robot moves another link against this one. */
-static bool carries_others(const struct Robot *robot, const struct RobotLink *link) {
-  bool carries = false;
-  for (size_t i = 0; i < robot->joint_count && !carries; i++)
-    carries = joint_moves(robot->joints[i]) && robot->joints[i]->parent->carrier == link->carrier;
-  return carries;
+size_t moving_children(const struct Robot *robot, const struct RobotLink *link) {
+  size_t count = 0;
+  for (size_t i = 0; i < robot->joint_count; i++)
+    count += joint_moves(robot->joints[i]) && robot->joints[i]->parent->carrier == link->carrier;
+  return count;
 }
 
 /* True if the moment of inertia of a body about some axis is rounding error. */
@@ -335,13 +334,18 @@ static bool has_no_moment(const struct RigidBody *body) {
   return fmin(fmin(x, y), z) <= rounding * fmax(fmax(x, y), z);
 }
 
-void robot_check_moments(const struct Robot *robot, const struct RobotLink *link, long line,
+void robot_check_moments(const struct Robot *robot, const struct RobotLink *link, bool needs_mass, long line,
                          struct Diagnostics *diagnostics) {
-  if (carries_others(robot, link) || !has_no_moment(&link->carrier->carried)) return;
-  report_error(diagnostics, line,
-               "the link '%s' turns freely, and has no moment of inertia about an axis; expected an <inertia> whose "
-               "principal moments are above 0",
-               link->name);
+  const struct RigidBody *body = &link->carrier->carried;
+  if (moving_children(robot, link) > 0 || ((body->mass > 0 || !needs_mass) && !has_no_moment(body))) return;
+  if (needs_mass && !(body->mass > 0))
+    report_error(diagnostics, line, "the link '%s' moves freely, and has no mass; expected a <mass> above 0",
+                 link->name);
+  else
+    report_error(diagnostics, line,
+                 "the link '%s' turns freely, and has no moment of inertia about an axis; expected an <inertia> whose "
+                 "principal moments are above 0",
+                 link->name);
 }
 
 static void check_moments(const struct Connection *connection) {
@@ -349,7 +353,8 @@ static void check_moments(const struct Connection *connection) {
     const struct RobotJoint *joint = connection->robot->joints[i];
     bool turns = joint->type == FLOATING || joint->type == BALL;
     if (turns && !joint->is_mimicked && joint->armature == 0 && joint->child->moves_inertia)
-      robot_check_moments(connection->robot, joint->child, joint->line, connection->diagnostics);
+      robot_check_moments(connection->robot, joint->child, joint->type == FLOATING, joint->line,
+                          connection->diagnostics);
   }
 }
 

@@ -14,8 +14,14 @@ bool robot_connect(struct Robot *robot, struct Diagnostics *diagnostics);
 struct RobotLink *robot_link(const struct Robot *robot, const char *name, const char *what,
                              struct Diagnostics *diagnostics);
 
-/* Reports a link that turns freely, carries no others, and has no moment of inertia about an axis. */
-void robot_check_moments(const struct Robot *robot, const struct RobotLink *link, long line,
+/* Returns the number of joints that move other links against this one. */
+size_t moving_children(const struct Robot *robot, const struct RobotLink *link);
+
+/*
+ * Reports a link that turns freely, carries no others, and has no moment of inertia about an axis, or no mass although
+ * it needs one.
+ */
+void robot_check_moments(const struct Robot *robot, const struct RobotLink *link, bool needs_mass, long line,
                          struct Diagnostics *diagnostics);
 
 /* True if the joint has coordinates; false for NULL. */

@@ -434,7 +434,8 @@ struct Robot *urdf_read(xmlNodePtr root, const struct RobotOptions *options, str
   xmlNodePtr xacro = find_xacro(root);
   urdf.robot->line = line_of(root);
   urdf.robot->gravity[2] = -9.81;
-  urdf.robot->name = has_attribute(root, "name") ? attribute(root, "name") : copy_text("robot");
+  urdf.robot->name = attribute(root, "name");
+  if (urdf.robot->name == NULL || *urdf.robot->name == '\0') urdf.robot->name = copy_text("robot");
   if (options->keyframe != NULL)
     report_error(
         diagnostics, urdf.robot->line,

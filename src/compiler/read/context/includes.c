@@ -6,6 +6,7 @@
 #include "base/memory.h"
 #include "base/paths.h"
 #include "names/similar.h"
+#include "read/context/value_texts.h"
 #include "robots/robot_system.h"
 #include "xml/xml.h"
 
@@ -114,8 +115,8 @@ static bool has_contact_beside(xmlNodePtr include) {
 }
 
 /*
- * Returns the document of a source. It is parsed once for all <include>s of this file with the same options, and with
- * the same prefix where contacts stand beside them.
+ * Returns the document of a source. It is parsed once for all <include>s of this file with the same options and starts.
+ * They also have the same prefix where contacts stand beside them.
  */
 static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
   char *key = copy_text(source->canonical_path);
@@ -124,12 +125,16 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
     texts[i] = attribute(source->include, robot_word(i));
     key = format_text("%s\n%s", key, texts[i] != NULL ? texts[i] : "");
   }
+  for (xmlNodePtr node = source->include->children; node != NULL; node = node->next)
+    if (is_element(node, "coordinate") && has_attribute(node, "start"))
+      key = format_text("%s\n%s=%s", key, attribute(node, "name"), attribute(node, "start"));
   if (has_contact_beside(source->include)) key = format_text("%s\n%s", key, attribute(source->include, "as"));
   struct Document *known = names_find(reader->includes->documents, key);
   if (known == NULL) {
     struct Diagnostics local = {.file = source->file, .origin = source->origin, .noted = reader->diagnostics->noted};
     known = allocate(1, sizeof *known);
     struct RobotOptions options = robot_options_of(texts);
+    options.value_of = value_of_numbers;
     options.include = source->include;
     known->document = load_system(source, &options, &local);
     reader->diagnostics->errors += local.errors;

@@ -69,3 +69,8 @@ bool value_read(const char *text, const char *unit, struct Diagnostics *diagnost
   *value = (number * from.factor + from.offset - to.offset) / to.factor;
   return true;
 }
+
+bool value_of_numbers(const char *text, double *value) {
+  struct Diagnostics silent = {.errors = ERROR_LIMIT + 1};
+  return !value_has_unit(text) && value_read(text, "1", &silent, value);
+}

@@ -11,6 +11,9 @@
  */
 bool value_read(const char *text, const char *unit, struct Diagnostics *diagnostics, double *value);
 
+/* Sets the value of an expression of numbers, without messages. False for others, as with names of parameters. */
+bool value_of_numbers(const char *text, double *value);
+
 /* True if the text is a number followed by a unit. */
 bool value_has_unit(const char *text);
 

@@ -8,9 +8,9 @@
 #include "xml/nodes.h"
 
 char *next_name(const char **rest) {
-  static const char blanks[] = " \t\r\n";
-  const char *name = *rest + strspn(*rest, blanks);
-  size_t length = strcspn(name, blanks);
+  static const char separators[] = " \t\r\n,";
+  const char *name = *rest + strspn(*rest, separators);
+  size_t length = strcspn(name, separators);
   *rest = name + length;
   return length > 0 ? format_text("%.*s", (int)length, name) : NULL;
 }
