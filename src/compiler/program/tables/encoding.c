@@ -150,7 +150,7 @@ static int32_t word_of(const struct Encoding *encoding, const struct Instruction
 static void append_header(struct WordList *words, const struct Encoding *encoding,
                           const struct Instruction *instruction, size_t count, bool is_spaced) {
   enum Opcode opcode = instruction->opcode;
-  append_word(words, opcode);
+  append_word(words, (int32_t)opcode);
   append_word(words, (int32_t)count | (is_spaced ? SPACED : 0));
   append_word(words, (int32_t)spaces_of(instruction));
   if (opcode == CALL || opcode == CALL_OF_TWO)
