@@ -179,6 +179,19 @@ def test_a_robot(ready, tmp_path):
     assert ready.calls()[-1] == "python scripts/commands/run.py build/own/fmu/arm_6.fmu elbow=1"
 
 
+def test_options_of_a_run(ready):
+    add(ready.folder / "fmu" / "Pendulum")
+    status, text = ready.run("run", "Pendulum", "theta=1", "--stop-time", "2", "--no-events", cwd=ready.folder)
+    assert status == 0, text
+    assert ready.calls()[-1] == "python scripts/commands/run.py build/fmu/Pendulum.fmu theta=1 --stop-time 2 --no-events"
+
+
+def test_an_unknown_option_of_a_run(ready):
+    """It is found before anything is built."""
+    status, text = ready.run("run", "Pendulum", "--stoptime=2", cwd=ready.folder)
+    assert status == 2 and "scripts/run: there is no option --stoptime; see scripts/run --help" in text and ready.calls() == []
+
+
 def test_a_file_of_any_name(tmp_path):
     """The FMU has the name that the system has in its file."""
     (tmp_path / "draft 3.xml").write_text('<!-- mine --><system\n description="a mass" name="Sled"><coordinate name="x" velocity="v"/><kinetic>v^2/2</kinetic></system>')
