@@ -198,6 +198,12 @@ def test_shapes_that_are_fitted_to_bounds(tmp_path):
     assert 'robot.xml:2: a <geom> of type box is fitted to a mesh by fitaabb="true", which is not read' in inertia_of_fitted(tmp_path, "box", SLIDE, "true")
 
 
+def test_one_warning_for_all_lost_meshes(tmp_path):
+    lost = "".join(COLLISION.format(f'<mesh filename="lost{i}.obj"/>') for i in range(3))
+    report = scene_of(tmp_path, lost + COLLISION.format('<sphere radius="0.3"/>'), ground=True)[1]
+    assert report.count("touches nothing: the mesh 'lost") == 1 and "; 2 other shapes touch nothing either" in report
+
+
 def test_meshes_of_mjcf_that_are_lost(tmp_path):
     """Missing meshes give a message, and an error only if the motion depends on them."""
     loss = '<geom type="mesh" mesh="lost"/>'

@@ -144,10 +144,12 @@ static void read_collision(struct RobotFile *urdf, xmlNodePtr node, struct Robot
   bool touches = link_touches_ground(urdf->options, link->name);
   if (geometry == NULL || !read_geometry(urdf, geometry, touches, &collision, &problem)) {
     if (touches)
-      report_warning(
-          urdf->diagnostics, collision.line, "a <collision> of the link '%s' touches nothing: %s", link->name,
-          problem != NULL ? problem
-                          : "it has no geometry; expected a <box>, <sphere>, <cylinder>, <capsule> or <mesh>");
+      note_untouched(
+          urdf, collision.line,
+          format_text("a <collision> of the link '%s' touches nothing: %s", link->name,
+                      problem != NULL
+                          ? problem
+                          : "it has no geometry; expected a <box>, <sphere>, <cylinder>, <capsule> or <mesh>"));
     else {
       leave_out(urdf, "collision");
       note_mesh_problem(urdf, problem);

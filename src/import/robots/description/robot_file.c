@@ -166,6 +166,12 @@ void note_mesh_problem(struct RobotFile *file, char *problem) {
   file->mesh_problems++;
 }
 
+void note_untouched(struct RobotFile *file, long line, char *shape) {
+  if (file->untouched_count++ > 0) return;
+  file->untouched = shape;
+  file->untouched_line = line;
+}
+
 char *color_text(const double rgba[4]) {
   char *text = copy_text("#");
   for (int i = 0; i < 4; i++) text = format_text("%s%02x", text, (unsigned)lround(255 * fmin(fmax(rgba[i], 0), 1)));
@@ -178,6 +184,12 @@ void report_left_out(struct RobotFile *file) {
     list = format_text("%s%s%s", list, i > 0 ? ", " : "", file->left_out[i]);
   if (*list != '\0' && file->diagnostics->errors == 0)
     report_warning(file->diagnostics, 0, "left out, since the motion does not depend on them: %s", list);
+  size_t others = file->untouched_count > 0 ? file->untouched_count - 1 : 0;
+  if (file->untouched != NULL)
+    report_warning(file->diagnostics, file->untouched_line, "%s%s", file->untouched,
+                   others > 0 ? format_text("; %zu other shape%s", others,
+                                            others > 1 ? "s touch nothing either" : " touches nothing either")
+                              : "");
   if (file->mesh_problem != NULL && file->diagnostics->errors == 0)
     report_warning(file->diagnostics, 0, "%zu mesh%s not drawn; the first: %s", file->mesh_problems,
                    file->mesh_problems == 1 ? " is" : "es are", file->mesh_problem);

@@ -27,6 +27,9 @@ struct RobotFile {
   size_t unread_count;
   char *mesh_problem;   /* of the first mesh that cannot be drawn; NULL for none */
   size_t mesh_problems; /* number of such meshes */
+  char *untouched; /* of the first shape that should touch the ground, and cannot: what it is and why; NULL for none */
+  long untouched_line;
+  size_t untouched_count;
 };
 
 /* Returns the next of several names separated by blanks and advances *rest past it; NULL at the end. */
@@ -67,6 +70,9 @@ void check_attributes(struct RobotFile *file, xmlNodePtr node, const struct Attr
 
 /* Records a mesh that cannot be drawn; does nothing for NULL. */
 void note_mesh_problem(struct RobotFile *file, char *problem);
+
+/* Notes a shape that should touch the ground, and cannot. */
+void note_untouched(struct RobotFile *file, long line, char *shape);
 
 /* Returns a color such as "#ff8000ff" from red, green, blue and opacity between 0 and 1. */
 char *color_text(const double rgba[4]);

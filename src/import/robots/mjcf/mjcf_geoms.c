@@ -246,8 +246,9 @@ static void add_shape(struct Mjcf *mjcf, xmlNodePtr node, const struct Geom *geo
   }
   bool may_stand = geom->type != MESH && touches && !mjcf->file.options->says_ground;
   if (problem != NULL && (meets_ground || may_stand))
-    report_warning(mjcf->file.diagnostics, line_of(node), "a <geom> of type %s of the body '%s' touches nothing: %s",
-                   geom_types[geom->type], link->name, problem);
+    note_untouched(&mjcf->file, line_of(node),
+                   format_text("a <geom> of type %s of the body '%s' touches nothing: %s", geom_types[geom->type],
+                               link->name, problem));
   else if (problem != NULL && geom->type == MESH && geom->mesh != NULL)
     note_mesh_problem(&mjcf->file, geom->mesh->problem);
   else if (problem != NULL)
