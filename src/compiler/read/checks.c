@@ -176,8 +176,11 @@ static double *values_at_start(const struct Model *model) {
       again |= *mode != (double)((sign > 0.0) - (sign < 0.0));
       *mode = (double)((sign > 0.0) - (sign < 0.0));
     }
-    if (again) values = graph_evaluate(model->graph, symbols);
+    if (!again) break;
+    release(values);
+    values = graph_evaluate(model->graph, symbols);
   }
+  release(symbols);
   return values;
 }
 
@@ -193,6 +196,7 @@ static void warn_at_start(const struct Reader *reader) {
   check_quaternions(reader, values);
   check_expectations(reader, values);
   warn_outside_domains(&reader->scope->requirements, model->graph, values, reader->diagnostics);
+  release(values);
 }
 
 /* Returns the values of all nodes at the start, with these velocities for even and for odd indices. */
