@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 import fmu
 from building import build_systems
@@ -115,6 +116,18 @@ def test_copies_have_their_own_heights(tmp_path):
     second = '</include><include file="flat.urdf" as="s" base="floating" ground="true"><coordinate name="base_qw" start="0.6"/><coordinate name="base_qx" start="0.8"/>'
     report = check_robot(tmp_path, FLAT.format(0), "flat.urdf", 'base="floating" ground="true"', second)
     assert "base_z = 0.05," in report and "base_z = 0.494," in report
+
+
+def test_starts_of_an_outer_include_count(tmp_path):
+    """The leg bends as if the start stood in the <include> of the robot: the ball is at Rx(0.2) Ry(0.3) ((0, 0, -0.5) + Rx(0.7) (0.1, 0.2, -0.4))."""
+    (tmp_path / "legged.urdf").write_text(LEGGED.format(SHAPES["Sphere"]))
+    (tmp_path / "inner.xml").write_text(SYSTEM.format("Inner", ""))
+    outer = '<system name="Outer"><include file="inner.xml" as="x"><coordinate name="r.hip" start="0.3"/></include></system>'
+    (tmp_path / "outer.xml").write_text(outer)
+    about_x, about_y = Rotation.from_euler("x", [[0.2], [0.7]]), Rotation.from_euler("y", 0.3)
+    ball = [0, 0, -0.1] + about_x[0].apply(about_y.apply([0, 0, -0.5] + about_x[1].apply([0.1, 0.2, -0.4])))
+    height = np.ceil((0.3 - ball[2]) * 1e4) / 1e4
+    assert f"base_z = {height:g}, where" in lagc("outer.xml", "-o", "out", cwd=tmp_path).stderr
 
 
 def test_starts_that_do_not_count(tmp_path):

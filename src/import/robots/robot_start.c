@@ -11,9 +11,7 @@
 #include "xml/nodes.h"
 
 char *robot_own_start(const struct RobotOptions *options, const char *coordinate) {
-  xmlNodePtr node = options->include != NULL ? options->include->children : NULL;
-  while (node != NULL && !(is_element(node, "coordinate") && attribute_is(node, "name", coordinate))) node = node->next;
-  return node != NULL ? attribute(node, "start") : NULL;
+  return options->own_start != NULL ? options->own_start(options->context, coordinate) : NULL;
 }
 
 /* The starts that the <include> gives. uncounted: the coordinate of one that is no expression of numbers; NULL for none. */

@@ -13,5 +13,5 @@
 double robot_start_height(const struct Robot *robot, const struct RobotOptions *options,
                           const struct Diagnostics *diagnostics);
 
-/* Returns the start value that the <include> gives a coordinate; NULL for none. */
+/* Returns the start value that an <include> gives a coordinate; NULL for none. */
 char *robot_own_start(const struct RobotOptions *options, const char *coordinate);

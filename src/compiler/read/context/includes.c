@@ -114,9 +114,23 @@ static bool has_contact_beside(xmlNodePtr include) {
   return false;
 }
 
+/* A file and the overrides of all files. */
+struct Overridden {
+  struct Names *overrides;
+  const struct Source *source;
+};
+
+/* Returns the start that an <include> gives a coordinate of a file, as struct RobotOptions needs it. */
+static char *own_start(const void *context, const char *coordinate) {
+  const struct Overridden *overridden = context;
+  char *name = format_text("%s%s", overridden->source->prefix, coordinate);
+  const struct Override *override = override_of_attribute(names_find(overridden->overrides, name), "start");
+  return override != NULL ? attribute(override->node, "start") : NULL;
+}
+
 /*
- * Returns the document of a source. It is parsed once for all <include>s of this file with the same options and starts.
- * They also have the same prefix where contacts stand beside them.
+ * Returns the document of a source. It is parsed once for all <include>s of this file with the same options. They also
+ * have the same prefix where contacts stand beside them, or where the height of a robot follows from its starts.
  */
 static xmlDocPtr document_of(struct Reader *reader, const struct Source *source) {
   char *key = copy_text(source->canonical_path);
@@ -125,17 +139,18 @@ static xmlDocPtr document_of(struct Reader *reader, const struct Source *source)
     texts[i] = attribute(source->include, robot_word(i));
     key = format_text("%s\n%s", key, texts[i] != NULL ? texts[i] : "");
   }
-  for (xmlNodePtr node = source->include->children; node != NULL; node = node->next)
-    if (is_element(node, "coordinate") && has_attribute(node, "start"))
-      key = format_text("%s\n%s=%s", key, attribute(node, "name"), attribute(node, "start"));
-  if (has_contact_beside(source->include)) key = format_text("%s\n%s", key, attribute(source->include, "as"));
+  struct RobotOptions options = robot_options_of(texts);
+  bool has_height = options.floats && options.has_ground;
+  if (has_height || has_contact_beside(source->include)) key = format_text("%s\n%s", key, source->prefix);
   struct Document *known = names_find(reader->includes->documents, key);
   if (known == NULL) {
     struct Diagnostics local = {.file = source->file, .origin = source->origin, .noted = reader->diagnostics->noted};
     known = allocate(1, sizeof *known);
-    struct RobotOptions options = robot_options_of(texts);
-    options.value_of = value_of_numbers;
+    const struct Overridden overridden = {reader->includes->overrides, source};
     options.include = source->include;
+    options.own_start = own_start;
+    options.context = &overridden;
+    options.value_of = value_of_numbers;
     known->document = load_system(source, &options, &local);
     reader->diagnostics->errors += local.errors;
     names_set(reader->includes->documents, key, known);
@@ -179,9 +194,9 @@ static void load(struct Reader *reader, xmlNodePtr node, struct Source *source) 
               source->file, strerror(errno));
   if (source->canonical_path == NULL || !check_depth(reader, node, source) || !check_circle(reader, node, source))
     return;
+  note_overrides(reader, source);
   xmlDocPtr document = document_of(reader, source);
   if (document != NULL) source->root = xmlDocGetRootElement(document);
-  if (document != NULL) note_overrides(reader, source);
 }
 
 static struct Source *create_source(struct Reader *reader, xmlNodePtr node, const char *name, const char *prefix) {

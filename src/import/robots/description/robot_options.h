@@ -22,8 +22,10 @@ struct RobotOptions {
   const char *keyframe;       /* name of the MJCF keyframe for start values; NULL for the default */
   const char *tool;           /* link with outputs of its position and velocity; NULL for the only leaf */
   xmlNodePtr include;         /* NULL on the command line */
-  /* Sets the value of an expression of numbers in the <include>; false for others. NULL on the command line. */
-  bool (*value_of)(const char *text, double *value);
+  /* NULL on the command line. own_start: returns the start that an <include> gives a coordinate; NULL for none. */
+  char *(*own_start)(const void *context, const char *coordinate);
+  const void *context;
+  bool (*value_of)(const char *text, double *value); /* of an expression of numbers; false for others */
 };
 
 /* The attributes of an <include> for these options. */
