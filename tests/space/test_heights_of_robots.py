@@ -147,6 +147,8 @@ def test_starts_that_do_not_count(tmp_path):
         (f'<robot name="r"><link name="b">{INERTIAL.replace("1", "0", 1)}</link></robot>'.replace('value="0"', 'value="0"'), "robot.urdf", 'base="floating"', "", "the link 'b' moves freely, and has no mass; expected a <mass> above 0"),
         ('<mujoco><worldbody><geom type="plane" size="1 1 1" pos="0 0 0.3"/><body name="b" pos="0 0 0.5"><freejoint/><geom type="box" size="0.1 0.1 0.4"/></body></worldbody></mujoco>',
          "robot.xml", 'ground="true"', "", "the link 'b' is 0.2 m below the ground at the start"),
+        ('<mujoco><worldbody><geom type="plane" size="1 1 1"/><body name="b" pos="0 0 0.3"><freejoint/><geom type="ellipsoid" euler="0 45 0" size="0.3 0.1 0.5"/></body></worldbody></mujoco>',
+         "robot.xml", 'ground="true"', "", "the link 'b' is 0.11 m below the ground at the start"),  # sqrt((0.3^2 + 0.5^2)/2) - 0.3 = 0.1123
     ],
 )  # fmt: skip
 def test_messages(robot, name, options, content, message, tmp_path):

@@ -74,7 +74,10 @@ static double lowest_point(const struct Placement *link, const struct Collision 
   double depth = radius;
   if (strcmp(shape->type, "capsule") == 0) depth += lean * shape->length / 2;
   if (strcmp(shape->type, "cylinder") == 0) depth = radius * sqrt(fmax(0, 1 - lean * lean)) + lean * shape->length / 2;
-  for (int i = 0; i < 3; i++) depth += fabs(up[i]) * shape->size[i] / 2; /* 0 but for boxes */
+  double box = 0, squares = 0; /* 0 for shapes without sides */
+  for (int i = 0; i < 3; i++) box += fabs(up[i]) * shape->size[i] / 2;
+  for (int i = 0; i < 3; i++) squares += pow(up[i] * shape->size[i] / 2, 2);
+  depth += strcmp(shape->type, "ellipsoid") == 0 ? sqrt(squares) : box;
   for (size_t i = 0; i < shape->corner_count; i++) {
     double height = 0;
     for (int axis = 0; axis < 3; axis++) height += up[axis] * shape->corners[i][axis];
