@@ -207,6 +207,7 @@ STANDS = "nothing stands on the geom 'floor'; expected ground=\"true\" in an <in
 STATIC = "the geom 'wall' of the world does not touch the geom 'ga' of the body 'a', and 2 other such pairs, unlike in MuJoCo"
 BODIES = "the geom 'ga' of the body 'a' does not touch the geom on line 6 of the body 'c', unlike in MuJoCo"
 SPINS = "the torsional friction of condim=\"4\" is not read, and may change the motion; expected condim=\"3\""
+BELOW = "the link 'a' is 0.1 m below the ground at the start"
 DISABLED = "nothing touches the ground, as <flag> disables contacts; remove this"
 
 
@@ -214,7 +215,7 @@ DISABLED = "nothing touches the ground, as <flag> disables contacts; remove this
     "ground, replaced, new, lines",
     [
         ("", "", "", {(2, STANDS), (3, STATIC), (4, BODIES)}),
-        ('ground="true"', "", "", {(3, STATIC), (4, BODIES), (5, SPINS)}),
+        ('ground="true"', "", "", {(3, STATIC), (4, BODIES), (4, BELOW), (5, SPINS)}),
         ('ground="false"', "", "", set()),
         ('ground="false" self="true"', "", "", {(5, SPINS)}),
         ("", "</worldbody>", '</worldbody><option><flag contact="disable"/></option>', set()),
