@@ -177,8 +177,7 @@ void write_free_coordinates(const struct Writer *writer, const char *name, const
 /* Returns the start with the identity quaternion if the file gives none. */
 static struct JointStart start_of_quaternion(const struct RobotJoint *joint) {
   struct JointStart start = joint->start;
-  const double *q = &start.position[3];
-  if (q[0] == 0 && q[1] == 0 && q[2] == 0 && q[3] == 0) start.position[3] = 1;
+  if (!is_quaternion(&start.position[3])) start.position[3] = 1;
   return start;
 }
 

@@ -30,12 +30,11 @@ static void take_start(struct Starts *starts, const char *coordinate, double *va
 static struct RobotJoint joint_at_start(const struct RobotJoint *joint, struct Starts *starts) {
   struct RobotJoint moved = *joint;
   double *start = moved.start.position;
-  bool has_quaternion = start[3] != 0 || start[4] != 0 || start[5] != 0 || start[6] != 0;
   if (joint_is_single(joint)) {
     double leading = joint->leader->start.position[0];
     take_start(starts, joint->leader->symbol, &leading);
     start[0] = joint->ratio * leading + joint->shift;
-  } else if ((joint->type == BALL || joint->type == FLOATING) && has_quaternion) moved.type = FLOATING;
+  } else if ((joint->type == BALL || joint->type == FLOATING) && is_quaternion(&start[3])) moved.type = FLOATING;
   else if (joint->type != PRESCRIBED) moved.type = FIXED;
   return moved;
 }
@@ -46,8 +45,7 @@ static struct Placement base_placement(struct Starts *starts) {
   double quaternion[4] = {1, 0, 0, 0};
   static const char *const names[] = {"base_qw", "base_qx", "base_qy", "base_qz"};
   for (int i = 0; i < 4; i++) take_start(starts, names[i], &quaternion[i]);
-  bool is_rotation = quaternion[0] != 0 || quaternion[1] != 0 || quaternion[2] != 0 || quaternion[3] != 0;
-  if (is_rotation) placement.rotation = rotation_of_quaternion(quaternion);
+  if (is_quaternion(quaternion)) placement.rotation = rotation_of_quaternion(quaternion);
   return placement;
 }
 
@@ -75,8 +73,11 @@ static double lowest_point(const struct Placement *link, const struct Collision 
   if (strcmp(shape->type, "capsule") == 0) depth += lean * shape->length / 2;
   if (strcmp(shape->type, "cylinder") == 0) depth = radius * sqrt(fmax(0, 1 - lean * lean)) + lean * shape->length / 2;
   double box = 0, squares = 0; /* 0 for shapes without sides */
-  for (int i = 0; i < 3; i++) box += fabs(up[i]) * shape->size[i] / 2;
-  for (int i = 0; i < 3; i++) squares += pow(up[i] * shape->size[i] / 2, 2);
+  for (int i = 0; i < 3; i++) {
+    double side = up[i] * shape->size[i] / 2;
+    box += fabs(side);
+    squares += side * side;
+  }
   depth += strcmp(shape->type, "ellipsoid") == 0 ? sqrt(squares) : box;
   for (size_t i = 0; i < shape->corner_count; i++) {
     double height = 0;
@@ -95,15 +96,17 @@ struct LowestPoint {
 static struct LowestPoint lowest_of(const struct Robot *robot, struct Starts *starts) {
   const struct Placement *placements = placements_of(robot, starts);
   struct LowestPoint lowest = {NULL, INFINITY};
-  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next)
+  for (const struct RobotLink *link = robot->root; link != NULL; link = link->next) {
+    const struct Placement *placement = &placements[robot_link_index(robot, link->name)];
+    if (!carrier_moves(link, starts->options->floats)) continue;
     for (size_t i = 0; i < link->collision_count; i++) {
       const struct Collision *shape = &link->collisions[i];
       bool is_known = strcmp(shape->type, "plane") != 0 && (shape->file == NULL || shape->corner_count > 0);
-      bool touches = carrier_moves(link, starts->options->floats) && meets_ground(starts->options, link, shape);
-      if (!touches || !is_known) continue;
-      double height = lowest_point(&placements[robot_link_index(robot, link->name)], shape);
+      if (!is_known || !meets_ground(starts->options, link, shape)) continue;
+      double height = lowest_point(placement, shape);
       if (height < lowest.height) lowest = (struct LowestPoint){link, height};
     }
+  }
   return lowest;
 }
 

@@ -135,7 +135,7 @@ static struct OrderedFunction ordered(const struct SeparatedFunction *function, 
 }
 
 static void ordered_release(const struct OrderedFunction *function, size_t region_count) {
-  for (size_t i = 0; i < region_count; i++) ordered_release(&function->regions[i], 0);
+  for (size_t i = 0; i < region_count; i++) release(function->regions[i].outer.instructions);
   release(function->outer.instructions);
   release(function->regions);
 }

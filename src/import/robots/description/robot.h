@@ -53,6 +53,11 @@ struct JointStart {
   double position[7], velocity[7];
 };
 
+/* True unless the quaternion is 0, which stands for none. */
+static inline bool is_quaternion(const double q[4]) {
+  return q[0] != 0 || q[1] != 0 || q[2] != 0 || q[3] != 0;
+}
+
 /* A joint between two links. The child has this joint only. */
 struct RobotJoint {
   char *name, *symbol;
