@@ -164,6 +164,7 @@ struct ContactMetadata {
   size_t constraint; /* active while the contact is closed */
   size_t carried;    /* the force beside that of the constraint, in N; `mode` if the contact has none */
   const char *name;
+  bool restitution_is_constant; /* during a simulation */
 };
 
 /* Dry friction along a velocity: the indices of its modes among the parameters, and of its constraint. */

@@ -120,11 +120,14 @@ bool solver_step_vanishes(double time, double step) {
   return step <= 8 * DBL_EPSILON * fabs(time);
 }
 
-double solver_error(const struct Instance *instance) {
-  const struct Solver *solver = lagrangian.solver;
-  if (solver->at_work != NULL) solver = solver->at_work(instance);
-  if (solver->finer == NULL) return 0.0;
+double solver_tolerance(const struct Instance *instance) {
   double smallest = INFINITY;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) smallest = fmin(smallest, lagrangian.steps.nominal[i]);
   return instance->fmu_state->tolerance * smallest;
+}
+
+double solver_error(const struct Instance *instance) {
+  const struct Solver *solver = lagrangian.solver;
+  if (solver->at_work != NULL) solver = solver->at_work(instance);
+  return solver->finer == NULL ? 0.0 : solver_tolerance(instance);
 }

@@ -40,6 +40,9 @@ bool solver_is_out_of_memory(const struct Instance *instance);
 /* True if a step is only a few units in the last place of the time. */
 bool solver_step_vanishes(double time, double step);
 
+/* Returns the tolerance times the smallest nominal coordinate. */
+double solver_tolerance(const struct Instance *instance);
+
 /* Returns the error that the method may make in a coordinate inside a step; 0 if rounding is the only error. */
 double solver_error(const struct Instance *instance);
 

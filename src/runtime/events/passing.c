@@ -44,8 +44,11 @@ enum { NEARER = 64, NEARER_LIMIT = 8 };
  */
 static const double further_steps = 16.0, further_share = 2.0, share_before_event = 0.999;
 
-/* Length of the first interval, relative to the time between the last two events. */
-static const double look_ahead_share = 1.25;
+/*
+ * Length of the first interval, relative to the time between the last two events, and of each further one, relative to
+ * the one before. Each costs nine evaluations of all indicators.
+ */
+static const double look_ahead_share = 1.25, look_ahead_growth = 8.0;
 
 static const char gathering[] = "events accumulate (Zeno behaviour)";
 static const char bounces[] =
@@ -133,7 +136,7 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
     bool is_sure = search_interval_shorten(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
     if (search_for_event(instance, progress->searched, near, samples, TO_ROUNDING, time, indicator)) return true;
-    look_ahead = 2.0 * (near - progress->searched);
+    look_ahead = look_ahead_growth * (near - progress->searched);
     progress->searched = near;
     progress->close_events = 0;
   }

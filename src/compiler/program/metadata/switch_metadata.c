@@ -32,7 +32,8 @@ static const struct ContactMetadata *contacts_of(const struct Program *program) 
     bool has_carried = contact->carried != ZERO;
     metadata[i] = (struct ContactMetadata){mode_index(program, contact->mode), contact->constraint,
                                            mode_index(program, has_carried ? contact->carried : contact->mode),
-                                           name_of(program, contact->constraint)};
+                                           name_of(program, contact->constraint),
+                                           graph_is_constant_in_time(program->model->graph, contact->restitution)};
   }
   return metadata;
 }

@@ -27,6 +27,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "nonsmooth/cones/active_set.h"
 #include "nonsmooth/cones/cone_newton.h"
 #include "support/arena.h"
 
@@ -123,13 +124,22 @@ double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials) {
 size_t cones_lay_out(struct Cones *cones, size_t n, double *block) {
   struct Arena arena = {(uintptr_t)block};
   ARENA_NUMBERS(&arena, n, &cones->scale, &cones->best, &cones->swept);
-  ARENA_NUMBERS(&arena, cones->path != NULL ? cones->path->work_count(n) : cone_newton_work_count(n), &cones->work);
+  size_t method = cones->path != NULL ? cones->path->work_count(n) : cone_newton_work_count(n);
+  size_t active_set = active_set_work_count(n);
+  ARENA_NUMBERS(&arena, method > active_set ? method : active_set, &cones->work);
   return (arena.next - (uintptr_t)block) / sizeof(double);
 }
 
 /* True if the residual is small, or a rounding error of velocities, as in the slowest impacts. */
 static bool is_accepted(struct Cones *cones, double miss) {
   return miss <= law_roughly_holds || cone_newton(cones, cones->work) <= cones->impulses->rounding;
+}
+
+/* Finds impulses of contacts without friction by the active set method. */
+static bool is_pressed(struct Cones *cones) {
+  active_set_find(cones, cones->work);
+  double miss = cone_newton(cones, cones->work);
+  return miss <= cones->impulses->uncertain || is_accepted(cones, cones_relative_miss(cones, miss));
 }
 
 /* Sweeps from no impulse. */
@@ -140,9 +150,10 @@ static double search_by_sweeps(struct Cones *cones, enum Sweeps kind, int trials
 
 bool cones_find_impulses(struct Cones *cones) {
   if (!cones_fill_scales(cones)) return false;
-  double miss = cones_search_from(cones, AT_ONCE, cones->path != NULL ? LAW_TRIALS : LAW_TRIALS_ALONE);
+  bool is_convex = cones->path == NULL || active_set_applies(cones);
+  double miss = cones_search_from(cones, AT_ONCE, is_convex ? 1 : LAW_TRIALS);
   if (miss <= law_holds) return true;
-  if (cones->path == NULL) return is_accepted(cones, miss);
+  if (is_convex) return is_pressed(cones);
   double other = cones->path->find(cones, law_holds, false, cones->work);
   if (!(other < miss)) memcpy(cones->impulse, cones->best, cones->impulses->count * sizeof *cones->best);
   return is_accepted(cones, fmin(other, miss)) || is_accepted(cones, search_by_sweeps(cones, IN_TURN, LAW_TRIALS));

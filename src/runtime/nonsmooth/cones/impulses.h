@@ -12,6 +12,7 @@ struct ContactImpulses {
   double *delassus;                            /* count rows: Delassus matrix */
   double *rate;                                /* of the gaps, and the velocities of the frictions */
   double rounding;                             /* rounding error bound of the rates */
+  double uncertain;                            /* rates that uncertain directions of the gaps may cause */
   size_t deciding_count; /* leading rows on whose impulses friction limits depend: those of the contacts, or all */
   double *coefficient;   /* friction_count rows: friction limit by a unit impulse of each of them */
   double *given;         /* friction limits without them; NULL for none */

@@ -33,6 +33,12 @@
  */
 static const double rounded_acceleration = 1e-12;
 
+/*
+ * The same for a contact that its force has opened: its direction is uncertain (uncertain_rate()). If the gap does close,
+ * its next zero is another event.
+ */
+static const double uncertain_acceleration = 1e-6;
+
 /* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
 static const double jamming_share = 1e-3;
 
@@ -268,7 +274,8 @@ static size_t find_sinking(const struct Resolution *resolution, const struct Res
   for (size_t i = 0; i < resting->forces.count; i++) {
     size_t contact = resting->impulses.member[i];
     double acceleration = contact_value(resolution, contact, CONTACT_ACCELERATION);
-    double unit = resting->unit[i], rounding = rounded_acceleration * fmax(free / unit, force / (unit * unit));
+    double share = resolution->forced[contact] == FORCED_OPEN ? uncertain_acceleration : rounded_acceleration;
+    double unit = resting->unit[i], rounding = share * fmax(free / unit, force / (unit * unit));
     double least = error_bound_of_acceleration(resolution, contact) + rounding;
     if (contact_is_closed(resolution, contact) || !(acceleration < -least) || acceleration >= most) continue;
     most = acceleration;
@@ -393,11 +400,12 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   if (!slides && !any_comes_back(resolution)) return NULL;
   bool is_unclear = any_begins_to_slide(resolution);
   if (!create_resting(resolution, &resting, &problem)) return problem;
+  slides &= resting.impulses.friction_count > 0;
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
-  bool is_examined = closes || (slides && !is_unclear);
-  enum RestingSolutions solutions = is_examined ? resting_forces_solve(&resting.forces, !closes) : ONE_MOTION;
-  if (!slides && solutions >= PERHAPS_NONE) {
+  enum RestingSolutions solutions = ONE_MOTION;
+  if (slides && (closes || !is_unclear)) solutions = resting_forces_solve(&resting.forces, !closes);
+  if (!slides && closes && !resting_forces_press(&resting.forces)) {
     log_crushed(resolution, &resting.impulses, sinking);
     problem = crushed;
   } else if (numbers_of_solutions[solutions] != NULL)

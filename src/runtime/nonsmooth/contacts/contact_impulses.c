@@ -13,7 +13,9 @@
 static const double shortest_flight = 1000.0;
 /* Smaller speeds have no direction: their squares are close to underflow. */
 static const double least_speed = 1e-150;
-/* Bounces below this share of the method's error are lost in it, and some methods would sustain them. */
+/* Relative to the largest velocity, as uncertain_rate() explains. */
+static const double uncertain_share = 1e-6;
+/* Bounces below this share of the tolerance are lost in errors, and some methods would sustain them. */
 static const double lost_share = 0.02;
 
 bool is_touching(const struct Resolution *resolution, size_t contact) {
@@ -28,9 +30,27 @@ bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
   return is_touching(resolution, contact) && resolution->value[rate] <= resolution->error_bound[rate];
 }
 
-/* Returns the height of bounces that the method's error hides; 0 if rounding is the only error. */
-static double lost_height(const struct Resolution *resolution) {
-  return resolution->occasion == IN_EXCHANGE ? 0.0 : lost_share * solver_error(resolution->instance);
+double uncertain_rate(const struct Resolution *resolution) {
+  return uncertain_share * largest_scale(resolution->state, lagrangian.coordinate_count);
+}
+
+/* True if the contact has a restitution, and no other contact touches. */
+static bool bounces_alone(const struct Resolution *resolution, size_t contact) {
+  bool is_alone = contact_value(resolution, contact, CONTACT_RESTITUTION) > 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count && is_alone; i++)
+    is_alone = i == contact || !(contact_is_closed(resolution, i) || is_touching(resolution, i));
+  return is_alone;
+}
+
+/*
+ * Returns the height of bounces that count as lost; 0 if rounding is the only error. A bounce alone is lost in the error
+ * of the method. Where several contacts touch, as in a heap, each landing causes others, ever slower ones. These are
+ * lost below the tolerance, whatever the method is.
+ */
+static double lost_height(const struct Resolution *resolution, size_t contact) {
+  if (resolution->occasion == IN_EXCHANGE) return 0.0;
+  bool is_alone = bounces_alone(resolution, contact);
+  return lost_share * (is_alone ? solver_error(resolution->instance) : solver_tolerance(resolution->instance));
 }
 
 /*
@@ -48,7 +68,7 @@ bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double 
   double depth = resolution->occasion == IN_EXCHANGE ? 10.0 : 1.0;
   double lost =
       fmax(4.0 * resolution_error_bound(resolution, gap, gap + CONTACT_RATE), -depth * resolution->value[gap]);
-  return rate * rate <= 2.0 * fall * fmax(lost, lost_height(resolution));
+  return rate * rate <= 2.0 * fall * fmax(lost, lost_height(resolution, contact));
 }
 
 double largest_contact_force(const struct Resolution *resolution) {
@@ -101,6 +121,20 @@ bool let_stopped_slip(struct Resolution *resolution) {
     if (slides && !(speed_in_plane(resolution, along) > none)) set_friction(resolution, along, 1.0);
   }
   return true;
+}
+
+void let_unpressed_slide(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    bool rests = false, presses = false;
+    for (size_t k = 0; k < switches->contact_count; k++) {
+      if (!rests_on(switches, i, k)) continue;
+      rests = true;
+      presses |= contact_is_closed(resolution, k);
+    }
+    if (!rests || presses || !friction_sticks(resolution, i)) continue;
+    set_friction(resolution, i, 1.0);
+  }
 }
 
 double sliding_share(const struct Resolution *resolution, size_t friction) {
@@ -221,7 +255,8 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
   *impulses = (struct ContactImpulses){.contact_count = contacts,
                                        .friction_count = frictions,
                                        .count = contacts + frictions,
-                                       .deciding_count = contacts};
+                                       .deciding_count = contacts,
+                                       .uncertain = uncertain_rate(resolution)};
   impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES, lay_out_impulses(impulses, NULL));
   if (impulses->block == NULL) {
     solver_is_out_of_memory(resolution->instance);

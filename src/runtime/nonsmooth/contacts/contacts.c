@@ -1,15 +1,8 @@
 /*
- * Contacts: impacts, rest and parting. An impact takes the touching contact that closes fastest, together with
- * those as fast within rounding; the other touching contacts are open. Contacts that close because of it have
- * impacts of their own after it. So a row of touching bodies passes an impulse on (Newton's cradle).
- *
- * All that touch are taken at once, without restitution, if none would bounce visibly, and after IMPACT_LIMIT impacts.
- * Contacts that come to rest then may close others, which are taken in the same way. Each time, kinetic energy is lost.
- * If a contact closes after PLASTIC_LIMIT of these, bodies are crushed, and the motion ends.
- *
- * act_once() makes one change a round. It opens contacts that were lifted or part, else takes an impact, else
- * closes contacts that come to rest. Otherwise it projects out penetrations. open_pulling() opens the closed contact
- * that pulls most. resolve.c repeats the rounds until none changes anything.
+ * Contacts: impacts, rest and parting. act_once() makes one change a round. It opens contacts that were lifted or part,
+ * else takes impacts (impact_sequence.c), else closes contacts that come to rest. Otherwise it projects out
+ * penetrations. open_pulling() opens the closed contact that pulls most. resolve.c repeats the rounds until none changes
+ * anything.
  *
  * A contact that its force or an event has opened cannot come to rest by itself in the event, until an impact. The same
  * holds for one that contact_forces.c has closed (enum Forced).
@@ -18,7 +11,7 @@
 #include <math.h>
 
 #include "nonsmooth/contacts/contact_forces.h"
-#include "nonsmooth/contacts/impacts.h"
+#include "nonsmooth/contacts/impact_sequence.h"
 #include "nonsmooth/contacts/load_shares.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/contacts/contact_impulses.h"
@@ -28,178 +21,19 @@
 #include "detection/indicators.h"
 #include "nonsmooth/resolution.h"
 
-/*
- * IMPACT_LIMIT: impacts of an event that are taken one after another. PLASTIC_LIMIT: further ones, of all contacts that
- * touch. LIFT_LIMIT: projections of penetrated contacts, in an event and at the start.
- */
-enum { IMPACT_LIMIT = 100000, PLASTIC_LIMIT = 100, LIFT_LIMIT = 20 };
+/* Projections of penetrated contacts, in an event and at the start. */
+enum { LIFT_LIMIT = 20 };
 
-/* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
-static const double equal_share = 1e-9;
 /*
  * A negative gap of at most this number of rounding error bounds is not located again, since the search allows
  * FLOOR_IN_ERROR_BOUND.
  */
 static const double found_again = 0.25 * FLOOR_IN_ERROR_BOUND;
 
-/* Iterations leave closing rates below this share of the largest one in the event; impacts at them have no energy. */
-static const double unresolved_share = 1e-6;
-
 /* Forces below this share of the largest one are rounding errors, where a body begins to tip over an edge. */
 static const double vanishing_share = 1e-13;
 
 static const char penetrated[] = "a contact is penetrated";
-static const char no_impact[] = "an impact of a contact has no solution";
-
-/*
- * True if the rate of a contact is an error of the solver. No velocity has jumped at the event of another element, and
- * the contact was closed up to it, or touches without a visible rate.
- */
-static bool is_error_of_solver(const struct Resolution *resolution, size_t contact) {
-  if (resolution->occasion != AT_EVENT || resolution->jumped || may_change_gaps(resolution)) return false;
-  bool is_other = !is_hit(resolution, contact_indicator(resolution->switches, contact));
-  return resolution->first_mode[contact] != 0.0 ||
-         (is_other && -contact_value(resolution, contact, CONTACT_RATE) <= tolerances_of(resolution).rest);
-}
-
-/*
- * Returns the touching contact that closes fastest; contact_count for none. Rates within rounding count only for the
- * contact whose zero was located, before its first impact.
- */
-static size_t find_impact(const struct Resolution *resolution) {
-  size_t found = resolution->switches->contact_count;
-  double fastest = 0.0;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++) {
-    size_t rate = contact_slot(resolution->switches, i, CONTACT_RATE);
-    bool is_open = !contact_is_closed(resolution, i) && resolution->forced[i] == UNFORCED;
-    bool is_hit_first =
-        is_hit(resolution, contact_indicator(resolution->switches, i)) && is_open && resolution->impacts == 0;
-    double error = fmax(resolution->error_bound[rate], resolution->lost_speed);
-    bool closes = resolution->value[rate] < (is_hit_first ? 0.0 : -error);
-    if (!closes || is_error_of_solver(resolution, i) || !is_touching(resolution, i) ||
-        resolution->value[rate] >= fastest)
-      continue;
-    fastest = resolution->value[rate];
-    found = i;
-  }
-  return found;
-}
-
-/* Returns the largest rate of the contacts that touch, since the start of the event. */
-static double fastest_of_event(const struct Resolution *resolution) {
-  double fastest = 0.0;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    if (is_touching(resolution, i))
-      fastest = fmax(fastest, resolution->largest[contact_slot(resolution->switches, i, CONTACT_RATE)]);
-  return fastest;
-}
-
-/*
- * True if the impact of a contact is taken by itself, and others follow from it. False for one of all that touch. Then
- * none of them would bounce visibly, or this one has 1e-12 of the largest energy, or there were too many impacts.
- */
-static bool passes_on(const struct Resolution *resolution, size_t contact) {
-  double speed = -contact_value(resolution, contact, CONTACT_RATE);
-  bool any_bounces = false;
-  if (speed <= unresolved_share * fastest_of_event(resolution)) return false;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    any_bounces |= is_touching(resolution, i) &&
-                   !bounce_is_lost(resolution, i, contact_value(resolution, i, CONTACT_RESTITUTION) * speed);
-  return any_bounces && resolution->impacts < IMPACT_LIMIT;
-}
-
-/* True if a contact still closes after an impact of all that touch. */
-static bool closes_clearly(const struct Resolution *resolution, size_t contact) {
-  size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
-  return resolution->value[rate] < -unresolved_share * resolution->largest[rate];
-}
-
-static void open_all(struct Resolution *resolution) {
-  for (size_t i = 0; i < resolution->switches->contact_count; i++) set_contact(resolution, i, false);
-}
-
-/* Logs a restitution outside of 0 to 1, and returns false. */
-static bool check_restitution(const struct Resolution *resolution, size_t contact) {
-  double restitution = contact_value(resolution, contact, CONTACT_RESTITUTION);
-  if (restitution >= 0.0 && restitution <= 1.0) return true;
-  log_message(resolution->instance, STATUS_DISCARD,
-              "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", resolution->time,
-              resolution->switches->contacts[contact].name, restitution);
-  return false;
-}
-
-/*
- * Selects all frictions, and the contacts that close as fast as the given one, up to rounding. If the impact does not
- * pass on, it selects all touching contacts. False after logging an invalid restitution.
- */
-static bool choose_hit(struct Resolution *resolution, size_t contact, bool passes) {
-  const struct SwitchTable *switches = resolution->switches;
-  size_t slot = contact_slot(switches, contact, CONTACT_RATE);
-  double fastest = resolution->value[slot], error_bound = resolution->error_bound[slot];
-  bool is_fine = true;
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    size_t rate = contact_slot(switches, i, CONTACT_RATE);
-    double slower = resolution->value[rate] - fastest;
-    bool is_tied = slower <= error_bound + resolution->error_bound[rate] - equal_share * fastest;
-    resolution->part[i] = is_touching(resolution, i) && (is_tied || !passes) ? TAKES_PART : LEFT_OUT;
-    if (resolution->part[i] == LEFT_OUT) continue;
-    is_fine &= check_restitution(resolution, i);
-    resolution->forced[i] = UNFORCED;
-  }
-  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = TAKES_PART;
-  return is_fine;
-}
-
-/* Lets sticking frictions slide if all their contacts are open. */
-static void let_go(struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    bool rests = false, presses = false;
-    for (size_t k = 0; k < switches->contact_count; k++) {
-      if (!rests_on(switches, i, k)) continue;
-      rests = true;
-      presses |= contact_is_closed(resolution, k);
-    }
-    if (!rests || presses || !friction_sticks(resolution, i)) continue;
-    set_friction(resolution, i, 1.0);
-  }
-}
-
-static void let_all_slide(struct Resolution *resolution) {
-  for (size_t i = 0; i < resolution->switches->friction_count; i++) set_friction(resolution, i, 1.0);
-}
-
-/* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
-static bool take_impact(struct Resolution *resolution, size_t contact) {
-  bool passes = passes_on(resolution, contact);
-  if (resolution->impacts == IMPACT_LIMIT)
-    log_message(resolution->instance, STATUS_WARNING,
-                "time %g: after %d impacts at one time, the last one of '%s', contacts that touch lose all energy of "
-                "their impacts",
-                resolution->time, IMPACT_LIMIT, resolution->switches->contacts[contact].name);
-  if (!choose_hit(resolution, contact, passes)) return false;
-  resolution_keep_modes(resolution);
-  let_all_slide(resolution);
-  open_all(resolution);
-  bool done = impacts_take(resolution, passes);
-  resolution_restore_modes(resolution);
-  open_all(resolution);
-  let_go(resolution);
-  resolution->jumped = true;
-  resolution->impacts++;
-  if (!passes) resolution->plastic_impacts++;
-  return done && let_stopped_slip(resolution);
-}
-
-/* Logs singular equations, which name no contact by themselves; other reasons have been logged. */
-static const char *report_singular_impact(const struct Resolution *resolution, size_t contact) {
-  if (resolution->instance->singular != 0)
-    log_message(resolution->instance, resolution_status(resolution),
-                "time %g: the impact of the contact '%s' has no solution, as the equations of motion are singular "
-                "without contacts; expected masses for all coordinates",
-                resolution->time, resolution->switches->contacts[contact].name);
-  return no_impact;
-}
 
 /*
  * True if the bounce is lower than the error of the importer's first step after the impact. The importer would then
@@ -323,7 +157,7 @@ static const char *report_rest(const struct Resolution *resolution) {
               "time %g: no velocities are found with which the contact '%s' can close; expected another position, or "
               "fewer constraints",
               resolution->time, switches->contacts[contact].name);
-  return no_impact;
+  return impact_without_solution;
 }
 
 /*
@@ -347,7 +181,7 @@ static const char *let_rest(struct Resolution *resolution) {
   size_t fixed = find_prescribed(resolution);
   if (fixed < resolution->switches->contact_count) {
     contact_forces_report_fixed(resolution, fixed);
-    return no_impact;
+    return impact_without_solution;
   }
   return let_stopped_slip(resolution) && let_stopped_stick(resolution) ? NULL : report_rest(resolution);
 }
@@ -596,22 +430,7 @@ static const char *check_gaps(const struct Resolution *resolution) {
   return NULL;
 }
 
-/*
- * Takes the impact of a contact, and those that follow from it. Rates decide on these; the accelerations of the round
- * after the first one, with all contacts open, decide which bounces are lost.
- */
-static const char *take_impacts(struct Resolution *resolution, size_t contact) {
-  size_t count = resolution->switches->contact_count;
-  do {
-    if (!take_impact(resolution, contact)) return report_singular_impact(resolution, contact);
-    if (resolution->impacts == 1 || !resolution_evaluate_rates(resolution)) return NULL; /* the next round evaluates */
-    contact = find_impact(resolution);
-  } while (contact < count && resolution->plastic_impacts <= PLASTIC_LIMIT);
-  return NULL;
-}
-
 static const char *act_once(struct Resolution *resolution, bool *again) {
-  const struct SwitchTable *switches = resolution->switches;
   bool may_change = may_change_gaps(resolution) && resolution->occasion != AT_START;
   *again = true;
   const char *problem = check_values(resolution);
@@ -620,11 +439,7 @@ static const char *act_once(struct Resolution *resolution, bool *again) {
   if (may_change && !resolution->jumped) problem = check_gaps(resolution);
   if (problem != NULL) return problem;
   if (((may_change && !resolution->jumped) || resolution->thrown) && open_parting(resolution)) return NULL;
-  size_t contact = find_impact(resolution);
-  bool hits = contact<switches->contact_count, is_tried = resolution->plastic_impacts> PLASTIC_LIMIT;
-  if (hits && is_tried && closes_clearly(resolution, contact))
-    return contact_forces_report_crushed(resolution, contact);
-  if (hits && !is_tried) return take_impacts(resolution, contact);
+  if (takes_impacts(resolution, &problem)) return problem;
   if (close_contacts(resolution)) return let_rest(resolution);
   bool lifts;
   if (!lift(resolution, &lifts)) return report_rest(resolution);
@@ -637,7 +452,7 @@ static bool open_pulling(struct Resolution *resolution) {
   if (pulling == resolution->switches->contact_count) return false;
   resolution->forced[pulling] = FORCED_OPEN;
   set_contact(resolution, pulling, false);
-  let_go(resolution);
+  let_unpressed_slide(resolution);
   return true;
 }
 

@@ -32,11 +32,7 @@ struct Impact {
   double *impulse;
 };
 
-/*
- * Returns the restitution of a contact; 0 if the bounce would be lost in errors. The friction of a bounce that is cut
- * short is then that of rest, whose impulse equals the sum of all further bounces.
- */
-static double restitution_of(const struct Resolution *resolution, size_t contact) {
+double impact_restitution(const struct Resolution *resolution, size_t contact) {
   double restitution = contact_value(resolution, contact, CONTACT_RESTITUTION);
   double rate = -restitution * contact_value(resolution, contact, CONTACT_RATE);
   return bounce_is_lost(resolution, contact, rate) ? 0.0 : restitution;
@@ -45,7 +41,7 @@ static double restitution_of(const struct Resolution *resolution, size_t contact
 /* Returns the factor of a rate before the impact in its complementarity condition: 1 + share e if the gap closes. */
 static double rise_by_restitution(const struct Resolution *resolution, const struct ContactImpulses *impulses,
                                   size_t push, double share) {
-  double bounce = push < impulses->contact_count ? restitution_of(resolution, impulses->member[push]) : 0.0;
+  double bounce = push < impulses->contact_count ? impact_restitution(resolution, impulses->member[push]) : 0.0;
   return 1.0 + (impulses->rate[push] < 0.0 ? share * bounce : 0.0);
 }
 
@@ -85,7 +81,7 @@ static void add_impulses(struct Resolution *resolution, const struct ContactImpu
 
 /* Applies the impulse of one contact without friction: p = max(-(1 + e) u- / W, 0). */
 static bool take_one(struct Resolution *resolution, const struct ContactImpulses *impulses, bool bounces) {
-  double bounce = bounces ? restitution_of(resolution, impulses->member[0]) : 0.0;
+  double bounce = bounces ? impact_restitution(resolution, impulses->member[0]) : 0.0;
   double impulse = fmax(-(1.0 + bounce) * impulses->rate[0] / impulses->delassus[0], 0.0);
   if (!(impulses->delassus[0] > DBL_MIN)) {
     contact_forces_report_fixed(resolution, impulses->member[0]);

@@ -8,3 +8,9 @@
  * else without restitution. False, after logging the cause, if no impulses are found.
  */
 bool impacts_take(struct Resolution *resolution, bool bounces);
+
+/*
+ * Returns the restitution of a contact; 0 if the bounce would be lost in errors. The friction of a bounce that is cut
+ * short is then that of rest, whose impulse equals the sum of all further bounces.
+ */
+double impact_restitution(const struct Resolution *resolution, size_t contact);

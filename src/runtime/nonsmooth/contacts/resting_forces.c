@@ -4,7 +4,9 @@
  * Pang and Stone, The Linear Complementarity Problem, chapter 3). Else all 2^n active sets are tried, in groups of
  * n <= COMBINED_LIMIT contacts. F of an active set follows from a = 0 on it, by elimination, at a cost of O(2^n
  * n^3). Active sets with a singular matrix are skipped. Solutions with equal accelerations count as one motion. In
- * larger groups Lemke's method finds one solution, if any; whether there are others stays unknown.
+ * larger groups cone_search.c finds one solution, if any; whether there are others stays unknown.
+ *
+ * Without sliding friction S is symmetric, and the accelerations are unique. All contacts are then solved at once.
  *
  * If several solutions exist during a motion, the present forces are kept if they are stable under compliance. If they
  * are not a solution, because a contact closes, damped compliant contacts lead from them to one.
@@ -27,8 +29,7 @@ static const double locking_share = 1e-3;
 static const double least_coupling = 1e-13;
 
 static size_t work_count(const struct ConePath *path, size_t count) {
-  size_t large = count * count + 2 * count + pressing_forces_work_count(path, count), combined = count * (count + 1);
-  return count > COMBINED_LIMIT ? large : combined;
+  return count * count + 2 * count + pressing_forces_work_count(path, count);
 }
 
 size_t resting_forces_bytes(const struct ConePath *path, size_t count) {
@@ -173,7 +174,7 @@ static bool find_in_group(const struct RestingForces *resting, double size) {
   }
   if (!pressing_forces_find(resting->path, n, matrix, q, z, z + n)) return false;
   for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = z[i] * size;
-  return is_solution(resting, size);
+  return true;
 }
 
 /*
@@ -245,9 +246,19 @@ static enum RestingSolutions solve_group(const struct RestingForces *resting, bo
   bool is_one = is_surely_one(resting), is_small = resting->group_count <= COMBINED_LIMIT;
   if (is_solved && (is_one || (is_small && resting->lasts && is_stable(resting, size)))) return ONE_MOTION;
   if (is_small) return choose_motion(resting, is_solved, size);
-  if (!is_solved && !find_in_group(resting, size)) return is_one ? NO_MOTION : PERHAPS_NONE;
+  if (!is_solved && !(find_in_group(resting, size) && is_solution(resting, size)))
+    return is_one ? NO_MOTION : PERHAPS_NONE;
   if (!is_solved) note_solution(resting);
   return is_one ? ONE_MOTION : PERHAPS_OTHERS;
+}
+
+bool resting_forces_press(struct RestingForces *resting) {
+  double size = largest_free_acceleration(resting);
+  collect_all(resting);
+  if (!find_in_group(resting, size)) return false;
+  is_solution(resting, size);
+  note_solution(resting);
+  return true;
 }
 
 enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved) {

@@ -35,6 +35,12 @@ struct RestingForces resting_forces_in(void *block, const struct ConePath *path,
 double largest_free_acceleration(const struct RestingForces *resting);
 
 /*
+ * Finds the forces of contacts without sliding friction, and stores the solution in found and found_force. False if
+ * there is none, as where prescribed motions close a gap.
+ */
+bool resting_forces_press(struct RestingForces *resting);
+
+/*
  * Determines whether the solution exists and is unique in its accelerations. is_solved: the present forces are a
  * solution. If they last and are stable, they count as unique. Otherwise a solution is stored in found and found_force.
  * Groups of up to 12 contacts are enumerated up to a second solution. In larger groups cone_search.c finds one, and a

@@ -1,0 +1,13 @@
+/* The impacts of an event, one after another. */
+#pragma once
+
+#include "nonsmooth/resolution.h"
+
+/* The reason why the motion ends where no impulses are found. */
+extern const char impact_without_solution[];
+
+/*
+ * Takes impacts while contacts that touch close; all contacts are open then. False, with *problem as it was, if none
+ * closes. *problem: NULL, or the reason why the motion cannot continue.
+ */
+bool takes_impacts(struct Resolution *resolution, const char **problem);
