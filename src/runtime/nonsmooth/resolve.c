@@ -20,7 +20,7 @@
 #include "nonsmooth/conditions.h"
 #include "nonsmooth/continuity.h"
 
-/* Rounds after which an event resolution fails. Impacts alone take up to IMPACT_LIMIT rounds (contacts.c). */
+/* Rounds after which an event resolution fails. Impacts alone take up to IMPACT_LIMIT rounds (impact_sequence.c). */
 enum { ROUND_LIMIT = 2000 };
 
 static const char no_accelerations[] = "the accelerations do not exist after an event",

@@ -15,6 +15,7 @@ struct Tolerances tolerances_of(const struct Resolution *resolution) {
                              .rounded = 1e-4 * length,
                              .rest = (is_exchange ? 1e-6 : 1e-9) * velocity,
                              .acceleration = 1e-9 * velocity,
+                             .uncertain = 1e-6 * velocity,
                              .kink = continuity_allowed_share(resolution) * velocity};
 }
 

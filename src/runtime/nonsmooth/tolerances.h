@@ -14,6 +14,7 @@ struct Tolerances {
   double rounded;      /* penetration by start values with four digits, and errors of an importer's step: 1e-4 L */
   double rest;         /* speeds of frictions and closing rates at rest: 1e-9 V, of importers 1e-6 V */
   double acceleration; /* of gaps that a constraint or a vanishing force holds: 1e-9 V in a second */
+  double uncertain;    /* rates that uncertain directions of gaps may cause: 1e-6 V, with the square root of 1e-12 */
   double kink;         /* rates that the time to the zero of a branch, or a kink at it, may cause: share of V */
 };
 

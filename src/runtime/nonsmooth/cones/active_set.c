@@ -15,13 +15,13 @@
  * A solution costs O(n^3), and usually there are about as many as contacts that press.
  *
  * Unlike sweeps and Newton's method, it solves problems near singularity. An example is a ball that is wedged between
- * others in a row from wall to wall. A contact that depends on the set up to rounding is left out until the impulses change.
+ * others in a row from wall to wall. A contact that depends on the set is left out until the impulses
+ * change.
  */
 #include "nonsmooth/cones/active_set.h"
 
 #include <float.h>
 #include <math.h>
-#include <string.h>
 
 #include "support/arena.h"
 #include "support/elimination.h"
@@ -111,11 +111,10 @@ static size_t find_closing(const struct ActiveSet *set) {
 
 /* Finds the impulses of the set with u = 0. False if they are not determined. */
 static bool solve_set(struct ActiveSet *set) {
-  size_t width = 1;
   set->count = 0;
   for (size_t i = 0; i < set->n; i++)
     if (set->member[i] == IN) set->index[set->count++] = i;
-  width += set->count;
+  size_t width = set->count + 1;
   for (size_t i = 0; i < set->count; i++) {
     size_t row = set->index[i];
     for (size_t j = 0; j < set->count; j++) set->matrix[i * width + j] = scaled_element(set, row, set->index[j]);

@@ -9,9 +9,10 @@
  * 1. A semismooth Newton method, from no impulse (cone_newton.c).
  * 2. Projected gradient sweeps, O(n^2) each: all impulses take a step against their rates, and are projected. Newton's
  *    method follows after 10 sweeps, after 20 more, and so on, up to LAW_TRIALS times.
- * 3. An interior-point method (cone_interior.c). Contacts without friction need none: their problem is convex, and the
- *    sweeps converge.
+ * 3. An interior-point method (cone_interior.c).
  * 4. Gauss-Seidel sweeps, in which the impulses change one after another, as in 2.
+ *
+ * Without friction the problem is convex, and the active set method (active_set.c) takes the place of 2 to 4.
  *
  * All impulses of a step in 1 to 3 change at once, so that the result does not depend on their order. A symmetric
  * problem has symmetric impulses, also where there are several solutions.
@@ -31,7 +32,7 @@
 #include "nonsmooth/cones/cone_newton.h"
 #include "support/arena.h"
 
-/* Trials; without an interior path, or where it fails for forces, there are more. */
+/* Trials; where the interior path fails for forces, there are more. */
 enum { LAW_TRIALS = 4, LAW_TRIALS_ALONE = 12 };
 
 /* How many more sweeps each trial makes than the one before; the first one makes none. */
@@ -135,7 +136,7 @@ static bool is_accepted(struct Cones *cones, double miss) {
   return miss <= law_roughly_holds || cone_newton(cones, cones->work) <= cones->impulses->rounding;
 }
 
-/* Finds impulses of contacts without friction by the active set method. */
+/* Finds impulses of contacts without friction by the active set method. False if they do not fulfil the law. */
 static bool is_pressed(struct Cones *cones) {
   active_set_find(cones, cones->work);
   double miss = cone_newton(cones, cones->work);

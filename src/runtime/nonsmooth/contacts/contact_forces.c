@@ -34,8 +34,8 @@
 static const double rounded_acceleration = 1e-12;
 
 /*
- * The same for a contact that its force has opened: its direction is uncertain (uncertain_rate()). If the gap does close,
- * its next zero is another event.
+ * The same for a contact that its force has opened: its direction is uncertain (struct Tolerances). If the gap does
+ * close, its next zero is another event.
  */
 static const double uncertain_acceleration = 1e-6;
 

@@ -7,14 +7,13 @@
 #include "nonsmooth/contacts/planes.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "nonsmooth/tolerances.h"
 #include "support/arena.h"
 
 /* Flights shorter than this many units in the last place of the time count as rest: their ends cannot be separated. */
 static const double shortest_flight = 1000.0;
 /* Smaller speeds have no direction: their squares are close to underflow. */
 static const double least_speed = 1e-150;
-/* Relative to the largest velocity, as uncertain_rate() explains. */
-static const double uncertain_share = 1e-6;
 /* Bounces below this share of the tolerance are lost in errors, and some methods would sustain them. */
 static const double lost_share = 0.02;
 
@@ -28,10 +27,6 @@ bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
   size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
   if (contact_is_closed(resolution, contact)) return true;
   return is_touching(resolution, contact) && resolution->value[rate] <= resolution->error_bound[rate];
-}
-
-double uncertain_rate(const struct Resolution *resolution) {
-  return uncertain_share * largest_scale(resolution->state, lagrangian.coordinate_count);
 }
 
 /* True if the contact has a restitution, and no other contact touches. */
@@ -49,8 +44,9 @@ static bool bounces_alone(const struct Resolution *resolution, size_t contact) {
  */
 static double lost_height(const struct Resolution *resolution, size_t contact) {
   if (resolution->occasion == IN_EXCHANGE) return 0.0;
-  bool is_alone = bounces_alone(resolution, contact);
-  return lost_share * (is_alone ? solver_error(resolution->instance) : solver_tolerance(resolution->instance));
+  double error = solver_error(resolution->instance);
+  bool is_error = error > 0.0 || bounces_alone(resolution, contact);
+  return lost_share * (is_error ? error : solver_tolerance(resolution->instance));
 }
 
 /*
@@ -256,7 +252,7 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
                                        .friction_count = frictions,
                                        .count = contacts + frictions,
                                        .deciding_count = contacts,
-                                       .uncertain = uncertain_rate(resolution)};
+                                       .uncertain = tolerances_of(resolution).uncertain};
   impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES, lay_out_impulses(impulses, NULL));
   if (impulses->block == NULL) {
     solver_is_out_of_memory(resolution->instance);

@@ -21,13 +21,6 @@ void contact_impulses_free(const struct Resolution *resolution, struct ContactIm
  */
 bool contact_impulses_find_own(struct Resolution *resolution, const struct ContactImpulses *impulses, double *own);
 
-/*
- * Returns the largest rate of a gap that its uncertain direction may cause: 1e-6 of the largest velocity. Contacts touch
- * if their gaps are at most 1e-12 of a length. Where they nearly depend on each other, their directions then differ by
- * the square root of that from those that touch exactly.
- */
-double uncertain_rate(const struct Resolution *resolution);
-
 /* True if the contact is closed in the present modes. */
 static inline bool contact_is_closed(const struct Resolution *resolution, size_t contact) {
   return contact_holds(resolution->instance, contact);

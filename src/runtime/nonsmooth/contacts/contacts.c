@@ -7,7 +7,6 @@
  * A contact that its force or an event has opened cannot come to rest by itself in the event, until an impact. The same
  * holds for one that contact_forces.c has closed (enum Forced).
  */
-#include <float.h>
 #include <math.h>
 
 #include "nonsmooth/contacts/contact_forces.h"

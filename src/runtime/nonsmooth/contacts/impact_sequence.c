@@ -20,7 +20,6 @@
 #include "nonsmooth/contacts/impacts.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/tolerances.h"
-#include "evaluation/evaluate.h"
 
 const char impact_without_solution[] = "an impact of a contact has no solution";
 
@@ -92,20 +91,24 @@ static bool passes_on(const struct Resolution *resolution, size_t contact) {
 
 /* True if a contact still closes after an impact of all that touch, not only by uncertain directions of the gaps. */
 static bool closes_clearly(const struct Resolution *resolution, size_t contact) {
-  return contact_value(resolution, contact, CONTACT_RATE) < -uncertain_rate(resolution);
+  return contact_value(resolution, contact, CONTACT_RATE) < -tolerances_of(resolution).uncertain;
 }
 
 static void open_all(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->contact_count; i++) set_contact(resolution, i, false);
 }
 
+static bool has_valid_restitution(const struct Resolution *resolution, size_t contact) {
+  double restitution = contact_value(resolution, contact, CONTACT_RESTITUTION);
+  return restitution >= 0.0 && restitution <= 1.0;
+}
+
 /* Logs a restitution outside of 0 to 1, and returns false. */
 static bool check_restitution(const struct Resolution *resolution, size_t contact) {
-  double restitution = contact_value(resolution, contact, CONTACT_RESTITUTION);
-  if (restitution >= 0.0 && restitution <= 1.0) return true;
+  if (has_valid_restitution(resolution, contact)) return true;
   log_message(resolution->instance, STATUS_DISCARD,
               "time %g: the restitution of the contact '%s' is %g; expected one from 0 to 1", resolution->time,
-              resolution->switches->contacts[contact].name, restitution);
+              resolution->switches->contacts[contact].name, contact_value(resolution, contact, CONTACT_RESTITUTION));
   return false;
 }
 
@@ -171,20 +174,29 @@ static const char *report_singular_impact(const struct Resolution *resolution, s
   return impact_without_solution;
 }
 
-/* True if rates alone decide on the impacts of the contacts that touch. Lets these take part, and counts them. */
-static bool choose_frictionless(struct Resolution *resolution, int *count) {
+/* Lets the contacts that touch take part, without frictions. Returns their number. */
+static int choose_touching(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  bool is_fine = true;
-  *count = 0;
+  int count = 0;
   for (size_t i = 0; i < switches->contact_count; i++) {
     bool touches = is_touching(resolution, i);
     resolution->part[i] = touches ? TAKES_PART : LEFT_OUT;
-    *count += touches ? 1 : 0;
-    is_fine &= !touches || (switches->contacts[i].restitution_is_constant && check_restitution(resolution, i));
-    for (size_t k = 0; k < switches->friction_count && touches; k++) is_fine &= !rests_on(switches, k, i);
+    count += touches ? 1 : 0;
   }
   for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = LEFT_OUT;
-  return is_fine;
+  return count;
+}
+
+/* True if rates alone decide on the impacts of the contacts that take part. */
+static bool rates_decide(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool decide = true;
+  for (size_t i = 0; i < switches->contact_count && decide; i++) {
+    if (resolution->part[i] == LEFT_OUT) continue;
+    decide = switches->contacts[i].restitution_is_constant && has_valid_restitution(resolution, i);
+    for (size_t k = 0; k < switches->friction_count; k++) decide &= !rests_on(switches, k, i);
+  }
+  return decide;
 }
 
 /* Returns the row of the next impact of a single contact; the number of rows if there is none. */
@@ -202,8 +214,7 @@ static size_t find_single(const struct Resolution *resolution, const struct Cont
 
 /* Takes the impact of one contact: changes the velocities, and the rates of all rows. */
 static void take_single(struct Resolution *resolution, const struct ContactImpulses *impulses, size_t row) {
-  size_t n = impulses->count, coordinates = lagrangian.coordinate_count, contact = impulses->member[row];
-  double *velocity = resolution->state + coordinates;
+  size_t n = impulses->count, contact = impulses->member[row];
   double rate = contact_value(resolution, contact, CONTACT_RATE);
   double impulse = -(1.0 + impact_restitution(resolution, contact)) * rate / impulses->delassus[row * n + row];
   for (size_t i = 0; i < n; i++) {
@@ -211,8 +222,7 @@ static void take_single(struct Resolution *resolution, const struct ContactImpul
     resolution->value[slot] += impulses->delassus[i * n + row] * impulse;
     resolution->largest[slot] = fmax(resolution->largest[slot], fabs(resolution->value[slot]));
   }
-  for (size_t k = 0; k < coordinates; k++) velocity[k] += impulse * impulses->velocities[row * coordinates + k];
-  resolution->struck[contact] = 1.0;
+  impact_add(resolution, impulses, row, impulse);
   resolution->forced[contact] = UNFORCED;
   resolution->impacts++;
 }
@@ -224,8 +234,8 @@ static void take_single(struct Resolution *resolution, const struct ContactImpul
  */
 static bool take_singles(struct Resolution *resolution) {
   struct ContactImpulses impulses;
-  int count, before = resolution->impacts;
-  if (!choose_frictionless(resolution, &count) || resolution->impacts <= count) return true;
+  int before = resolution->impacts;
+  if (before <= choose_touching(resolution) || !rates_decide(resolution)) return true;
   if (!contact_impulses_create(resolution, &impulses)) return false;
   for (size_t row = find_single(resolution, &impulses); row < impulses.count; row = find_single(resolution, &impulses))
     take_single(resolution, &impulses, row);
@@ -241,8 +251,7 @@ static const char *take_impacts(struct Resolution *resolution, size_t contact) {
   size_t count = resolution->switches->contact_count;
   do {
     if (!take_impact(resolution, contact)) return report_singular_impact(resolution, contact);
-    if (resolution->impacts == 1) return NULL; /* the next round evaluates */
-    if (!resolution_evaluate_rates(resolution)) return NULL;
+    if (resolution->impacts == 1 || !resolution_evaluate_rates(resolution)) return NULL; /* the next round evaluates */
     if (!take_singles(resolution)) return report_singular_impact(resolution, contact);
     contact = find_impact(resolution);
   } while (contact < count && resolution->plastic_impacts <= PLASTIC_LIMIT);

@@ -70,13 +70,15 @@ static bool find_fine_impulses(const struct Resolution *resolution, const struct
   return find_impulses(resolution, impact, fine);
 }
 
-static void add_impulses(struct Resolution *resolution, const struct ContactImpulses *impulses, const double *impulse) {
+void impact_add(struct Resolution *resolution, const struct ContactImpulses *impulses, size_t row, double impulse) {
   double *velocity = resolution->state + lagrangian.coordinate_count;
-  for (size_t i = 0; i < impulses->contact_count; i++)
-    if (impulse[i] > 0.0) resolution->struck[impulses->member[i]] = 1.0;
-  for (size_t i = 0; i < impulses->count; i++)
-    for (size_t k = 0; k < lagrangian.coordinate_count; k++)
-      velocity[k] += impulse[i] * impulses->velocities[i * lagrangian.coordinate_count + k];
+  if (row < impulses->contact_count && impulse > 0.0) resolution->struck[impulses->member[row]] = 1.0;
+  for (size_t k = 0; k < lagrangian.coordinate_count; k++)
+    velocity[k] += impulse * impulses->velocities[row * lagrangian.coordinate_count + k];
+}
+
+static void add_impulses(struct Resolution *resolution, const struct ContactImpulses *impulses, const double *impulse) {
+  for (size_t row = 0; row < impulses->count; row++) impact_add(resolution, impulses, row, impulse[row]);
 }
 
 /* Applies the impulse of one contact without friction: p = max(-(1 + e) u- / W, 0). */

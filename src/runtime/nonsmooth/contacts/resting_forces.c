@@ -256,7 +256,7 @@ bool resting_forces_press(struct RestingForces *resting) {
   double size = largest_free_acceleration(resting);
   collect_all(resting);
   if (!find_in_group(resting, size)) return false;
-  is_solution(resting, size);
+  is_solution(resting, size); /* fills the accelerations, which uncertain directions may leave below 0 */
   note_solution(resting);
   return true;
 }
