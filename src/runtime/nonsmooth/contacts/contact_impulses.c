@@ -29,23 +29,26 @@ bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
   return is_touching(resolution, contact) && resolution->value[rate] <= resolution->error_bound[rate];
 }
 
-/* True if the contact has a restitution, and no other contact touches. */
-static bool bounces_alone(const struct Resolution *resolution, size_t contact) {
-  bool is_alone = contact_value(resolution, contact, CONTACT_RESTITUTION) > 0.0;
-  for (size_t i = 0; i < resolution->switches->contact_count && is_alone; i++)
-    is_alone = i == contact || !(contact_is_closed(resolution, i) || is_touching(resolution, i));
-  return is_alone;
+/* True if the contact has no friction, and has no restitution or touches beside others. */
+static bool is_in_heap(const struct Resolution *resolution, size_t contact) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool is_beside = !(contact_value(resolution, contact, CONTACT_RESTITUTION) > 0.0);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (rests_on(switches, i, contact)) return false;
+  for (size_t i = 0; i < switches->contact_count && !is_beside; i++)
+    is_beside = i != contact && (contact_is_closed(resolution, i) || is_touching(resolution, i));
+  return is_beside;
 }
 
 /*
- * Returns the height of bounces that count as lost; 0 if rounding is the only error. A bounce alone is lost in the error
- * of the method. Where several contacts touch, as in a heap, each landing causes others, ever slower ones. These are
- * lost below the tolerance, whatever the method is.
+ * Returns the height of bounces that count as lost, the error of the method; 0 if rounding is the only error. In a heap
+ * without friction each landing causes others, ever slower ones. These are lost below the tolerance, whatever the method
+ * is. With friction, a contact that closes before its time may jam another one that slides.
  */
 static double lost_height(const struct Resolution *resolution, size_t contact) {
   if (resolution->occasion == IN_EXCHANGE) return 0.0;
   double error = solver_error(resolution->instance);
-  bool is_error = error > 0.0 || bounces_alone(resolution, contact);
+  bool is_error = error > 0.0 || !is_in_heap(resolution, contact);
   return lost_share * (is_error ? error : solver_tolerance(resolution->instance));
 }
 
