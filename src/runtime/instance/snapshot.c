@@ -135,8 +135,11 @@ static bool are_modes(const char *parameters) {
     if (!is_whole(parameters, switches->branches[i].mode, -1.0, 1.0)) return false;
   for (size_t i = 0; i < switches->contact_count; i++)
     if (!is_whole(parameters, switches->contacts[i].mode, 0.0, 1.0)) return false;
-  for (size_t i = 0; i < switches->friction_count; i++)
-    if (!is_whole(parameters, switches->frictions[i].mode, -1.0, 1.0)) return false;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    bool is_of_two = is_in_plane(switches, i);
+    double lowest = is_of_two ? PLANE_IS_FREE : -1.0, highest = is_of_two ? PLANE_CREEPS : 1.0;
+    if (!is_whole(parameters, switches->frictions[i].mode, lowest, highest)) return false;
+  }
   for (size_t i = 0; i < switches->resting_count; i++)
     if (!is_whole(parameters, switches->resting[i].mode, VELOCITY_RESTS, VELOCITY_ACCELERATES)) return false;
   return true;
