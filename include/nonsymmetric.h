@@ -6,8 +6,9 @@
  *
  *  K^-1 = S - S C (1 + E^T S C)^-1 E^T S.
  *
- * The r by r matrix is factored by Gaussian elimination with row pivoting. A factorization costs r solutions with S
- * more than that of saddle.h. Reference: G. H. Golub, C. F. Van Loan: Matrix Computations, section 2.1.
+ * Columns of C without effect take no part: those of 0, and those of forces whose row of J is 0, as of open contacts.
+ * With a others, the a by a matrix is factored by Gaussian elimination with row pivoting. A factorization costs a
+ * solutions with S more than that of saddle.h. Reference: G. H. Golub, C. F. Van Loan: Matrix Computations, section 2.1.
  *
  * coordinate[] has the n numbers of saddle.h, then r and the r rows of these forces. m has the numbers of saddle.h,
  * then NONSYMMETRIC_MASS(n, r) numbers: C by columns, and workspace.
@@ -20,7 +21,7 @@
 #include "arithmetic.h"
 
 /* Numbers of storage after those of saddle.h, see above. */
-#define NONSYMMETRIC_MASS(n, r) (2 * (n) * (r) + (r) * (r) + (r) + 4 * (n))
+#define NONSYMMETRIC_MASS(n, r) (2 * (n) * (r) + (r) * (r) + 2 * (r) + 1 + 4 * (n))
 
 /* Do the same as those of saddle.h. nonsymmetric_factor() also returns 1 if 1 + E^T S C is singular: friction jams. */
 size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m);

@@ -14,8 +14,9 @@ struct Nonsymmetric {
   size_t count;      /* r */
   const int *force;  /* rows of the forces from which others follow */
   size_t c;          /* C */
-  size_t response;   /* S C */
-  size_t factor;     /* 1 + E^T S C, later its factors L U, by rows */
+  size_t active;     /* the number a of columns that take part, then these */
+  size_t response;   /* S C of these columns */
+  size_t factor;     /* 1 + E^T S C, a by a, later its factors L U, by rows */
   size_t pivot;      /* pivot row of each column */
   size_t right_side; /* SADDLE_RIGHT_SIDE(n) */
 };
@@ -25,7 +26,8 @@ static struct Nonsymmetric nonsymmetric_of(size_t n, const size_t *start, const 
   size_t constraints = 0;
   for (size_t i = 0; i < n; i++) constraints += coordinate[i] < 0 ? 1 : 0;
   nonsymmetric.c = SADDLE_MASS(start[n], column[start[n] + n], n, constraints);
-  nonsymmetric.response = nonsymmetric.c + n * nonsymmetric.count;
+  nonsymmetric.active = nonsymmetric.c + n * nonsymmetric.count;
+  nonsymmetric.response = nonsymmetric.active + nonsymmetric.count + 1;
   nonsymmetric.factor = nonsymmetric.response + n * nonsymmetric.count;
   nonsymmetric.pivot = nonsymmetric.factor + nonsymmetric.count * nonsymmetric.count;
   nonsymmetric.right_side = nonsymmetric.pivot + nonsymmetric.count;
@@ -74,11 +76,34 @@ static void solve_symmetric(size_t n, const size_t *start, const size_t *column,
   saddle_least_forces(n, start, column, coordinate, m, x);
 }
 
-/* True if a column of C is not 0: some force follows from it at present. */
-static bool has_part(size_t n, const double *column_of_c) {
+/* True if a number of an array is not 0. */
+static bool has_part(size_t count, const double *numbers) {
   bool has = false;
-  for (size_t i = 0; i < n; i++) has |= column_of_c[i] != 0.0;
+  for (size_t i = 0; i < count; i++) has |= numbers[i] != 0.0;
   return has;
+}
+
+/* True if the row of a constraint has elements that are not 0, which that of an open contact has not. */
+static bool is_filled(size_t n, const size_t *start, const size_t *column, const double *m, int row) {
+  const size_t *first = column + start[n] + row; /* of the rows of K */
+  return has_part(first[1] - first[0], m + start[n] + first[0]);
+}
+
+/* Notes the columns of C that take part. Returns their number. */
+static size_t find_active(size_t n, const size_t *start, const size_t *column, const struct Nonsymmetric *nonsymmetric,
+                          double *m) {
+  double *active = m + nonsymmetric->active + 1;
+  size_t count = 0;
+  for (size_t k = 0; k < nonsymmetric->count; k++)
+    if (is_filled(n, start, column, m, nonsymmetric->force[k]) && has_part(n, m + nonsymmetric->c + k * n))
+      active[count++] = (double)k;
+  m[nonsymmetric->active] = (double)count;
+  return count;
+}
+
+/* Returns the row of the force of an active column. */
+static int row_of_force(const struct Nonsymmetric *nonsymmetric, const double *m, size_t k) {
+  return nonsymmetric->force[(size_t)m[nonsymmetric->active + 1 + k]];
 }
 
 size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, double *m) {
@@ -86,24 +111,26 @@ size_t nonsymmetric_factor(size_t n, const size_t *start, const size_t *column, 
   if (singular != 0) return singular;
   struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, column, coordinate);
   double *right_side = m + nonsymmetric.right_side, *factor = m + nonsymmetric.factor;
-  for (size_t k = 0; k < nonsymmetric.count; k++) {
-    memcpy(right_side, m + nonsymmetric.c + k * n, n * sizeof *right_side);
-    if (has_part(n, right_side)) solve_symmetric(n, start, column, coordinate, m, right_side);
+  size_t count = find_active(n, start, column, &nonsymmetric, m);
+  for (size_t k = 0; k < count; k++) {
+    size_t c = nonsymmetric.c + (size_t)m[nonsymmetric.active + 1 + k] * n;
+    memcpy(right_side, m + c, n * sizeof *right_side);
+    solve_symmetric(n, start, column, coordinate, m, right_side);
     memcpy(m + nonsymmetric.response + k * n, right_side, n * sizeof *right_side);
-    for (size_t i = 0; i < nonsymmetric.count; i++)
-      factor[i * nonsymmetric.count + k] = (i == k ? 1.0 : 0.0) + right_side[nonsymmetric.force[i]];
+    for (size_t i = 0; i < count; i++)
+      factor[i * count + k] = (i == k ? 1.0 : 0.0) + right_side[row_of_force(&nonsymmetric, m, i)];
   }
-  bool is_regular = eliminate_small(nonsymmetric.count, factor, m + nonsymmetric.pivot);
-  return is_regular ? 0 : 1;
+  return eliminate_small(count, factor, m + nonsymmetric.pivot) ? 0 : 1;
 }
 
 void nonsymmetric_solve(size_t n, const size_t *start, const size_t *column, const int *coordinate, const double *m,
                         double *x) {
   struct Nonsymmetric nonsymmetric = nonsymmetric_of(n, start, column, coordinate);
+  size_t count = (size_t)m[nonsymmetric.active];
   double *free_force = x + n; /* free, as r < n */
   solve_symmetric(n, start, column, coordinate, m, x);
-  for (size_t i = 0; i < nonsymmetric.count; i++) free_force[i] = x[nonsymmetric.force[i]];
-  solve_small(nonsymmetric.count, m + nonsymmetric.factor, m + nonsymmetric.pivot, free_force);
-  for (size_t k = 0; k < nonsymmetric.count; k++)
+  for (size_t k = 0; k < count; k++) free_force[k] = x[row_of_force(&nonsymmetric, m, k)];
+  solve_small(count, m + nonsymmetric.factor, m + nonsymmetric.pivot, free_force);
+  for (size_t k = 0; k < count; k++)
     for (size_t i = 0; i < n; i++) x[i] -= free_force[k] * m[nonsymmetric.response + k * n + i];
 }
