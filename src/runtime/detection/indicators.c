@@ -61,6 +61,14 @@ bool indicators_at(struct Instance *instance, double time, const double *state, 
   return indicators_at_point(instance, &point, feels_forces(instance), indicator);
 }
 
+double indicator_at(struct Instance *instance, double time, const double *state, size_t indicator, double *work) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool is_of_forces =
+      indicator < switches->branch_count ? switches->feels_forces : indicator_is_force(instance, indicator);
+  struct Point point = solver_point(instance, time, state);
+  return indicators_at_point(instance, &point, is_of_forces, work) ? work[indicator] : NAN;
+}
+
 void indicators_at_times(struct Instance *instance, const double *times, size_t count, const double *states,
                          double *indicators) {
   size_t width = indicator_count(lagrangian.switches);

@@ -6,6 +6,12 @@
 /* Evaluates the indicators at a time and state. False if the accelerations do not exist. */
 bool indicators_at(struct Instance *instance, double time, const double *state, double *indicator);
 
+/*
+ * Returns one indicator at a time and state; NAN if the accelerations do not exist. Those of gaps and velocities need no
+ * accelerations. work: as for indicators_at().
+ */
+double indicator_at(struct Instance *instance, double time, const double *state, size_t indicator, double *work);
+
 /* Evaluates the indicators at several times, from rows of states to rows of indicators; NAN if they do not exist. */
 void indicators_at_times(struct Instance *instance, const double *times, size_t count, const double *states,
                          double *indicators);

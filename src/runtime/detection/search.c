@@ -90,12 +90,16 @@ static struct Search search_of(struct Instance *instance) {
   return search;
 }
 
+/* Finds the state at a time. False if that fails. */
+static bool find_state(struct Search *search, double time) {
+  return lagrangian.solver->interpolate(search->instance, time, search->state) &&
+         (!search->projects || solver_project(search->instance, time, search->state) == NULL);
+}
+
 /* Evaluates the indicators at a time; NAN if they do not exist. */
 static void sample(struct Search *search, double time, double *values) {
   size_t count = indicator_count(lagrangian.switches);
-  bool known = lagrangian.solver->interpolate(search->instance, time, search->state);
-  if (search->projects) known = known && solver_project(search->instance, time, search->state) == NULL;
-  known = known && indicators_at(search->instance, time, search->state, values);
+  bool known = find_state(search, time) && indicators_at(search->instance, time, search->state, values);
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
@@ -109,8 +113,8 @@ static void sample_interval(struct Search *search, double from, double to, const
 }
 
 static double value_at(struct Search *search, size_t indicator, double time) {
-  sample(search, time, search->values);
-  return search->values[indicator];
+  return find_state(search, time) ? indicator_at(search->instance, time, search->state, indicator, search->values)
+                                  : NAN;
 }
 
 static void measure_error_bound(struct Search *search, double time) {
@@ -238,13 +242,18 @@ static double refine(struct Search *search, size_t indicator, double sign, struc
   return before.f <= -behind.f && !is_later ? before.time : behind.time;
 }
 
-/* Locates the zero in an interval in which f, with these values at the nodes, falls through 0 once. */
-static double refine_fall(struct Search *search, size_t indicator, double sign, const double *f, double from,
-                          double to) {
+/*
+ * Locates the zero in an interval in which f, with these values at the nodes, falls through 0 once. INFINITY if it is
+ * behind end.
+ */
+static double refine_fall(struct Search *search, size_t indicator, double sign, const double *f, double from, double to,
+                          double end) {
   int node = CHEBYSHEV_DEGREE;
   if (f[node] < 0.0) return from;
   while (node > 1 && f[node - 1] >= 0.0) node--;
   struct Sample before = {chebyshev_time(from, to, node), f[node]};
+  bool may_be_behind = chebyshev_time(from, to, node - 1) > end;
+  if (may_be_behind && (before.time > end || sample_at(search, indicator, sign, end).f > 0.0)) return INFINITY;
   struct Sample behind = {chebyshev_time(from, to, node - 1), f[node - 1]};
   narrow_fall(search, indicator, sign, f, from, to, &before, &behind);
   return refine(search, indicator, sign, before, behind);
@@ -261,7 +270,7 @@ static double first_fall_in(struct Search *search, size_t indicator, double sign
   double error_bound = search->error_bound[indicator];
   enum Verdict verdict = search_judge(f, error_bound);
   if (verdict == STAYS) return INFINITY;
-  if (verdict == FALLS) return refine_fall(search, indicator, sign, f, from, to);
+  if (verdict == FALLS) return refine_fall(search, indicator, sign, f, from, to, end);
   double middle = 0.5 * (from + end);
   if (depth == 0 || !(middle > from && middle < end)) {
     bool falls = f[CHEBYSHEV_DEGREE] >= -error_bound && f[0] < -error_bound;
