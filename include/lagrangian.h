@@ -225,6 +225,7 @@ struct SampleMetadata {
 
 struct ContactLaws;
 struct FrictionLaws;
+struct SlidingLaws;
 struct Resolution;
 struct TimeLaws;
 
@@ -247,6 +248,7 @@ struct SwitchTable {
   const struct AssignmentMetadata *assignments;
   const struct ContactLaws *contact_laws;   /* resolution.h; NULL without contacts */
   const struct FrictionLaws *friction_laws; /* resolution.h; NULL without frictions */
+  const struct SlidingLaws *sliding_laws;   /* resolution.h; NULL if no friction follows from contacts */
   const struct ConePath *cone_path;         /* cones.h; NULL if no friction follows from contacts or is in a plane */
   /* [friction * contact_count + contact]: true if the friction depends on the contact force; NULL if none does. */
   const bool *rests_on;

@@ -73,6 +73,8 @@ RUNTIME = Layers(
     src/runtime/nonsmooth
     src/runtime/nonsmooth/cones
     src/runtime/nonsmooth/contacts
+    src/runtime/nonsmooth/frictions
+    src/runtime/nonsmooth/sliding
     src/runtime/nonsmooth/planes
     src/runtime/nonsmooth/rests
     src/runtime/events

@@ -29,6 +29,7 @@
 extern const struct Solver solver_taylor, solver_radau, solver_auto, solver_exact;
 extern const struct ContactLaws contact_laws;
 extern const struct FrictionLaws friction_laws, plane_friction_laws;
+extern const struct SlidingLaws sliding_laws;
 extern const struct ConePath cone_path;
 
 static const struct {
@@ -192,6 +193,7 @@ static struct SwitchTable *switches_of(const struct Program *program) {
   if (switches->friction_count > 0)
     switches->friction_laws = switches->plane_count > 0 ? &plane_friction_laws : &friction_laws;
   if (switches_need_cone_path(switches)) switches->cone_path = &cone_path;
+  if (switches->rests_on != NULL) switches->sliding_laws = &sliding_laws;
   if (switches->resting_count > 0) switches->find_resting = resting_find;
   if (switches->timed_count > 0) switches->time_laws = &time_laws;
   return switches;

@@ -64,6 +64,24 @@ ROD = """<system name="PainleveRod" description="Uniform rod that slides on its 
   <experiment stopTime="1"/>
 </system>"""
 
+# The rod on two tips side by side, on which the friction grows at once. It may roll and yaw.
+TIPS = """<system name="RodOnTips" description="Uniform rod that slides on two tips">
+  <parameter name="theta0" start="1.2"/><parameter name="later" start="2"/><mode name="mu" start="0.1"/>
+  <coordinate name="x" velocity="vx" velocityStart="-1"/>
+  <coordinate name="y" velocity="vy" start="sin(theta0)"/>
+  <coordinate name="theta" velocity="w" start="theta0"/>
+  <coordinate name="roll" velocity="wr"/><coordinate name="yaw" velocity="wy"/>
+  <body mass="1" x="x" y="y" inertia="1/3" angle="theta"/>
+  <kinetic>0.1*wr^2 + 0.1*wy^2</kinetic>
+  <potential>9.81*y</potential>
+  <contact name="left" gap="y - sin(theta) + 0.1*roll" restitution="0"/>
+  <contact name="right" gap="y - sin(theta) - 0.1*roll" restitution="0"/>
+  <friction name="rubLeft" velocity="vx + sin(theta)*w + 0.1*wy" force="mu*left.force"/>
+  <friction name="rubRight" velocity="vx + sin(theta)*w - 0.1*wy" force="mu*right.force"/>
+  <event when="time &gt; 0.001"><set mode="mu">later</set></event>
+  <experiment stopTime="1"/>
+</system>"""
+
 WEDGE = """<system name="Wedge" description="Ball that falls into a wedge of 60 degrees">
   <parameter name="e" start="0.8"/><parameter name="mu" start="0"/><parameter name="r" start="0.1"/>
   <coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy" start="1"/><coordinate name="phi" velocity="w"/>
@@ -141,6 +159,7 @@ SYSTEMS = {
     "ThreeBalls": balls("ThreeBalls", PAIRS),
     "ThreeBallsTurned": balls("ThreeBallsTurned", PAIRS[::-1]),
     "PainleveRod": ROD,
+    "RodOnTips": TIPS,
     "Wedge": WEDGE,
     "RockingBlock": BLOCK,
     "FlatLanding": LANDING,
@@ -344,6 +363,26 @@ def test_a_locking_rod_is_an_error(open_fmu, w, words):
     instance = open_fmu("PainleveRod")
     with instance.fails(ERROR, rf"contact 'tip' has {words}, .*friction 'rub'.*Painleve"):
         instance.initialize({"w": w, "vy": np.cos(1.2) * w})
+
+
+@pytest.mark.parametrize("mu", [2.0, 1.6, 1.3])
+def test_a_rod_on_two_tips_stops_by_an_impulse(open_fmu, mu):
+    """Sliding has no forces from a friction of 1.376 on. Beyond it an impulse ends the slip; up to it the rod slides on."""
+    instance = open_fmu("RodOnTips").initialize({"later": mu}, tolerance=1e-10)
+    to(instance, 0.001 - 1e-9)
+    theta, vx, vy, w = instance.get("theta", "vx", "vy", "w")
+    c, s = np.cos(theta), np.sin(theta)
+    slip = vx + s * w
+    to(instance, 0.001 + 1e-9)
+    if rod_pressure(theta, mu) > 0:
+        assert instance.get("vx", "w") == pytest.approx([vx, w], abs=1e-6)
+        return
+    normal, friction = -np.linalg.solve([[1 + 3 * c**2, -3 * c * s], [-3 * c * s, 1 + 3 * s**2]], [0, slip])
+    assert 0 < abs(friction) < mu * normal
+    expected = [vx + friction, vy + normal, w + 3 * (s * friction - c * normal)]
+    assert instance.get("vx", "vy", "w") == pytest.approx(expected, abs=1e-6)
+    assert instance.get("roll", "yaw") == pytest.approx([0, 0], abs=1e-9)
+    assert sum("an impulse ends the slip" in text for _, _, text in instance.messages) == 1
 
 
 def test_a_rod_parts_before_it_locks(open_fmu):

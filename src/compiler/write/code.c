@@ -79,11 +79,13 @@ static void write_runtime(FILE *file, const struct Program *program) {
     include_room(file, "nonsmooth");
     include_room(file, "events");
   }
-  if (switches->contact_count > 0 || switches->friction_count > 0) {
+  if (switches->contact_count > 0 || has_planes(switches)) {
     include_source(file, "support/elimination.c");
     include_room(file, "nonsmooth/cones");
     include_room(file, "nonsmooth/contacts");
   }
+  if (switches->friction_count > 0) include_room(file, "nonsmooth/frictions");
+  if (switches->contact_count > 0 && switches->friction_count > 0) include_room(file, "nonsmooth/sliding");
   if (has_planes(switches)) include_room(file, "nonsmooth/planes");
   if (switches->resting_count > 0) include_room(file, "nonsmooth/rests");
   if (switching != NULL && switching->timed_count > 0) include_room(file, "timing");

@@ -54,7 +54,7 @@ void instance_reset(struct Instance *instance) {
   instance->fmu_state->changed = CHANGED_VALUES;
   instance->parameter_constants_are_stale = instance->solver_is_stale = true;
   instance->reported_impossible_start = instance->reported_straight_input = false;
-  instance->reported_other_forces = instance->reported_other_impulses = false;
+  instance->reported_other_forces = instance->reported_other_impulses = instance->reported_ended_slip = false;
   instance->reported_singularity = 0;
   instance->departure_time = -INFINITY;
 }

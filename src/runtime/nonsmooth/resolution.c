@@ -198,6 +198,13 @@ void resolution_set_mode(struct Resolution *resolution, size_t mode, double valu
   resolution->changed = true;
 }
 
+void set_friction(struct Resolution *resolution, size_t friction, double mode) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t plane = plane_of(switches, friction);
+  if (plane < switches->plane_count) switches->friction_laws->set_plane(resolution, plane, mode != 0.0);
+  else resolution_set_mode(resolution, switches->frictions[friction].mode, mode);
+}
+
 static double *modes_of(const struct Resolution *resolution) {
   return resolution->instance->parameter + lagrangian.parameter_count - resolution->switches->mode_count;
 }

@@ -65,6 +65,7 @@ struct Resolution {
   bool has_searched_jam;                  /* all modes of frictions at rest were tried */
   bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
   int impacts, plastic_impacts, lifts;    /* plastic_impacts: those of all contacts that touch */
+  int short_steps;                        /* those of the event that have ended a slip */
   double lost_speed;                      /* largest rate of a gap at which a contact came to rest in the event */
   double least_acceleration; /* smaller ones are rounding errors of the last solution for frictions at rest */
 };
@@ -96,6 +97,31 @@ struct ContactLaws {
   bool (*part)(struct Resolution *resolution);
   /* Logs a contact that is penetrated. Returns NULL if there is none, else the reason to stop. */
   const char *(*check_gaps)(const struct Resolution *resolution);
+};
+
+struct RestingContacts; /* contact_forces.h */
+struct Paradox;
+
+/* The problem of contacts with sliding frictions; FMUs without any do not link it (sliding_laws.c). */
+struct SlidingLaws {
+  /*
+   * True if a friction on a selected contact begins to slide: it is at rest, and its direction follows from its
+   * acceleration. With other contacts closed it would slide in another direction, so that forces at this direction say
+   * nothing about other solutions.
+   */
+  bool (*any_begins)(const struct Resolution *resolution);
+  /* Finds what a message says if there is no solution, or not only one. */
+  void (*find_paradox)(const struct Resolution *resolution, const struct RestingContacts *resting,
+                       struct Paradox *paradox);
+  /*
+   * Finds the forces of frictions in planes at rest too, without which those of the contacts do not exist, or ends the
+   * slip. Sets *again if it succeeds. Else it logs the paradox, and returns the reason to stop.
+   */
+  const char *(*resolve_paradox)(struct Resolution *resolution, const struct Paradox *paradox, bool *again);
+  /* Warns at most once an instance that the solution may not be unique. */
+  void (*report_others)(const struct Resolution *resolution, const struct RestingContacts *resting);
+  /* Ends a slip of contacts without forces; false if there is none (end_slip.h). */
+  bool (*end_slip)(struct Resolution *resolution);
   /* Logs the contact that jams where the solver stopped; false if none does. */
   bool (*explain)(struct Resolution *resolution);
 };
@@ -192,6 +218,12 @@ static inline bool may_change_gaps(const struct Resolution *resolution) {
   return resolution->switched != NULL || resolution->set_mode;
 }
 
+/* Ends a slip of contacts without forces. False if there is none, or no friction on contacts. */
+static inline bool resolution_ends_slip(struct Resolution *resolution) {
+  const struct SlidingLaws *laws = resolution->switches->sliding_laws;
+  return laws != NULL && laws->end_slip(resolution);
+}
+
 /* Returns the value of a mode, given its index among the parameters. */
 static inline double mode_of(const struct Resolution *resolution, size_t mode) {
   return resolution->instance->parameter[mode];
@@ -204,6 +236,9 @@ static inline enum Part *part_of_friction(const struct Resolution *resolution, s
 
 /* Sets a mode, and notes that something changed. */
 void resolution_set_mode(struct Resolution *resolution, size_t mode, double value);
+
+/* Sets the mode of a friction: 0 for sticking, else the sign of its velocity, which frictions in planes ignore. */
+void set_friction(struct Resolution *resolution, size_t friction, double mode);
 
 /* Save and restore the modes, around trials of others. */
 void resolution_keep_modes(struct Resolution *resolution);

@@ -137,7 +137,10 @@ static const char *resolve_in_rounds(struct Resolution *resolution) {
   bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) return "events follow each other without end (Zeno behaviour)";
-    if (!resolution_evaluate(resolution)) return no_accelerations;
+    if (!resolution_evaluate(resolution)) {
+      if (round == 0 || !resolution_ends_slip(resolution)) return no_accelerations;
+      continue;
+    }
     if (round == 0) conditions_begin(resolution);
     problem = resolve_once(resolution, &again);
   }
@@ -185,7 +188,7 @@ static const char *keep_on_constraints(struct Resolution *resolution) {
 }
 
 bool resolve_explain(struct Instance *instance, double time, double *state) {
-  const struct ContactLaws *laws = lagrangian.switches->contact_laws;
+  const struct SlidingLaws *laws = lagrangian.switches->sliding_laws;
   if (laws == NULL || evaluate_prepare(instance) != STATUS_DONE) return false;
   struct Resolution resolution = resolution_at(instance, time, state, AT_CHANGE);
   struct Point point = solver_point(instance, time, state);

@@ -39,29 +39,14 @@ static const double rounded_acceleration = 1e-12;
  */
 static const double uncertain_acceleration = 1e-6;
 
-/* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
-static const double jamming_share = 1e-3;
-
 /*
  * A contact cannot move if the held contacts and frictions leave less than this fraction of its W_ii. It is the squared
  * sine of the angle between them. Where the contact follows from them, it is rounding.
  */
 static const double smallest_share_of_motion = 1e-10;
 
-/* Number of solutions, as messages say it; NULL if the motion continues. */
-static const char *const numbers_of_solutions[] = {
-    [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
-
 static const char crushed[] = "contacts crush a body between them";
 static const char no_contact_impulses[] = "the forces of contacts cannot be found";
-
-/* The problem of the contacts that take part; forces are in units of unit[]. */
-struct RestingContacts {
-  struct ContactImpulses impulses;
-  struct RestingForces forces;
-  double *unit; /* unit of the force of each contact: 1 / sqrt(W_ii) */
-  void *block;
-};
 
 static bool sticks_on(const struct Resolution *resolution, size_t contact) {
   const struct SwitchTable *switches = resolution->switches;
@@ -88,11 +73,7 @@ static bool any_comes_back(const struct Resolution *resolution) {
   return any;
 }
 
-/*
- * Lets the contacts at rest without sticking friction and the frictions that slide take part. True if a
- * selected friction rests on a selected contact.
- */
-static bool choose_resting(struct Resolution *resolution) {
+bool choose_resting(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t contacts = switches->contact_count;
   bool slides = false;
@@ -200,7 +181,7 @@ const char *contact_forces_report_crushed(struct Resolution *resolution, size_t 
   return crushed;
 }
 
-static void free_resting(const struct Resolution *resolution, struct RestingContacts *resting) {
+void free_resting(const struct Resolution *resolution, struct RestingContacts *resting) {
   if (resting->block != NULL) scratch_return(resolution->instance, SCRATCH_RESTING);
   contact_impulses_free(resolution, &resting->impulses);
 }
@@ -236,11 +217,7 @@ static bool find_movable_contacts(struct Resolution *resolution, struct ContactI
   return find_contact_impulses(resolution, impulses);
 }
 
-/*
- * Sets up the problem. False, with *problem NULL, if no selected contact can move; with the reason, if M is singular or
- * memory is missing.
- */
-static bool create_resting(struct Resolution *resolution, struct RestingContacts *resting, const char **problem) {
+bool create_resting(struct Resolution *resolution, struct RestingContacts *resting, const char **problem) {
   *resting = (struct RestingContacts){0};
   *problem = NULL;
   if (!find_movable_contacts(resolution, &resting->impulses)) {
@@ -284,58 +261,6 @@ static size_t find_sinking(const struct Resolution *resolution, const struct Res
   return found;
 }
 
-/* Returns the row with the least diagonal element of S, where friction opposes the motion of the gap most. */
-static size_t find_locked(const struct RestingContacts *resting) {
-  const struct RestingForces *forces = &resting->forces;
-  size_t locked = 0, n = forces->count;
-  for (size_t i = 1; i < n; i++)
-    if (forces->s[i * n + i] < forces->s[locked * n + locked]) locked = i;
-  return locked;
-}
-
-/* Returns the name of the friction that reduces the diagonal element of S most. */
-static const char *locking_friction(const struct Resolution *resolution, const struct ContactImpulses *impulses,
-                                    size_t contact) {
-  size_t contacts = impulses->contact_count, most = 0;
-  double taken = -INFINITY;
-  for (size_t f = 0; f < impulses->friction_count; f++) {
-    double takes = sliding_share(resolution, impulses->member[contacts + f]) *
-                   impulses->coefficient[f * contacts + contact] *
-                   impulses->delassus[contact * impulses->count + contacts + f];
-    if (takes > taken) most = f;
-    taken = fmax(takes, taken);
-  }
-  return resolution->switches->frictions[impulses->member[contacts + most]].name;
-}
-
-/* The names and the number in a message about missing forces. */
-struct Paradox {
-  const char *contact, *friction, *how_many; /* how_many solutions there are */
-};
-
-static struct Paradox find_paradox(const struct Resolution *resolution, const struct RestingContacts *resting,
-                                   const char *how_many) {
-  size_t row = find_locked(resting);
-  return (struct Paradox){.contact = resolution->switches->contacts[resting->impulses.member[row]].name,
-                          .friction = locking_friction(resolution, &resting->impulses, row),
-                          .how_many = how_many};
-}
-
-/*
- * Finds the forces of frictions in planes at rest too, without which those of the contacts do not exist. Sets *again if
- * that sets the modes. Else it logs the paradox, and returns the reason to stop.
- */
-static const char *resolve_together(struct Resolution *resolution, const struct Paradox *paradox, bool *again) {
-  const struct FrictionLaws *laws = resolution->switches->friction_laws;
-  *again = laws->resolve_together != NULL && laws->resolve_together(resolution);
-  if (*again) return NULL;
-  log_message(resolution->instance, resolution_status(resolution),
-              "time %g: the force of the contact '%s' has %s solution, as the friction '%s' slides and presses it "
-              "together (Painleve's paradox); expected less friction, or another position",
-              resolution->time, paradox->contact, paradox->how_many, paradox->friction);
-  return "forces of contacts with friction are not determined";
-}
-
 /* Lets frictions in planes on a contact that closes slide: they may have lost their force as the contact opened. */
 static void let_slide(struct Resolution *resolution, size_t contact) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++)
@@ -361,101 +286,28 @@ static bool take_solution(struct Resolution *resolution, const struct RestingCon
   return changes;
 }
 
-/* Warns at most once an instance that the solution may not be unique. */
-static void report_others(const struct Resolution *resolution, const struct RestingContacts *resting) {
-  const struct ContactImpulses *impulses = &resting->impulses;
-  size_t contact = find_locked(resting);
-  if (resolution->instance->reported_other_forces) return;
-  resolution->instance->reported_other_forces = true;
-  log_message(resolution->instance, STATUS_WARNING,
-              "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', may have another "
-              "solution: too many contacts are coupled to exclude it",
-              resolution->time, resolution->switches->contacts[impulses->member[contact]].name,
-              locking_friction(resolution, impulses, contact));
-}
-
-/*
- * True if a friction on a selected contact begins to slide: it is at rest, and its direction follows from its
- * acceleration. With other contacts closed it would slide in another direction, so that forces at this direction say
- * nothing about other solutions.
- */
-static bool any_begins_to_slide(const struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  double slowest = tolerances_of(resolution).rest;
-  bool begins = false;
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    if (friction_sticks(resolution, i) || !(sliding_speed(resolution, i) <= slowest)) continue;
-    for (size_t k = 0; k < switches->contact_count; k++)
-      begins |= resolution->part[k] != LEFT_OUT && rests_on(switches, i, k);
-  }
-  return begins;
-}
-
 const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
+  const struct SlidingLaws *laws = resolution->switches->sliding_laws; /* not NULL if frictions slide */
   struct RestingContacts resting;
   struct Paradox paradox = {.how_many = NULL};
   *again = false;
   const char *problem = NULL;
   bool slides = choose_resting(resolution);
   if (!slides && !any_comes_back(resolution)) return NULL;
-  bool is_unclear = any_begins_to_slide(resolution);
+  bool is_unclear = slides && laws->any_begins(resolution);
   if (!create_resting(resolution, &resting, &problem)) return problem;
   slides &= resting.impulses.friction_count > 0;
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
-  enum RestingSolutions solutions = ONE_MOTION;
-  if (slides && (closes || !is_unclear)) solutions = resting_forces_solve(&resting.forces, !closes);
+  enum RestingSolutions *solutions = &resting.solutions;
+  if (slides && (closes || !is_unclear)) *solutions = resting_forces_solve(&resting.forces, !closes);
   if (!slides && closes && !resting_forces_press(&resting.forces)) {
     log_crushed(resolution, &resting.impulses, sinking);
     problem = crushed;
-  } else if (numbers_of_solutions[solutions] != NULL)
-    paradox = find_paradox(resolution, &resting, numbers_of_solutions[solutions]);
+  } else if (*solutions != ONE_MOTION && *solutions != PERHAPS_OTHERS)
+    laws->find_paradox(resolution, &resting, &paradox);
   else if (closes) *again = take_solution(resolution, &resting);
-  if (solutions == PERHAPS_OTHERS) report_others(resolution, &resting);
+  if (*solutions == PERHAPS_OTHERS) laws->report_others(resolution, &resting);
   free_resting(resolution, &resting);
-  return paradox.how_many != NULL ? resolve_together(resolution, &paradox, again) : problem;
-}
-
-/*
- * Returns the acceleration of gap j by forces of two contacts whose sum is 1, and whose accelerations cancel in gap i.
- * INFINITY if no forces that press do so. With W_ii = 1 it is 0 where both jam, and of order 1 elsewhere.
- */
-static double left_by_pair(double ii, double ij, double ji, double jj) {
-  return ij < 0.0 ? (ii * jj - ij * ji) / (ii - ij) : INFINITY;
-}
-
-/* True if frictions make two contacts jam each other. False if these oppose each other without friction too. */
-static bool jam_together(const struct RestingContacts *resting, size_t i, size_t j) {
-  size_t n = resting->forces.count;
-  const double *s = resting->forces.s;
-  double delassus = resting->impulses.delassus[i * resting->impulses.count + j] * resting->unit[i] * resting->unit[j];
-  return left_by_pair(s[i * n + i], s[i * n + j], s[j * n + i], s[j * n + j]) < jamming_share &&
-         !(left_by_pair(1.0, delassus, delassus, 1.0) < jamming_share);
-}
-
-/* Finds a contact that jams, by itself or with another; the number of contacts if there is none. */
-static size_t find_jammed(const struct RestingContacts *resting) {
-  size_t n = resting->forces.count, locked = find_locked(resting);
-  if (resting->forces.s[locked * n + locked] < jamming_share) return locked;
-  for (size_t i = 0; i < n; i++)
-    for (size_t j = 0; j < n; j++)
-      if (i != j && jam_together(resting, i, j)) return i;
-  return n;
-}
-
-bool contact_forces_explain(struct Resolution *resolution) {
-  struct RestingContacts resting;
-  const char *problem;
-  if (!choose_resting(resolution) || !create_resting(resolution, &resting, &problem)) return false;
-  size_t contact = find_jammed(&resting);
-  bool jams = contact < resting.forces.count;
-  if (jams)
-    log_message(
-        resolution->instance, STATUS_DISCARD,
-        "time %g: the friction '%s' slides and presses the contact '%s' together ever more strongly, up to a jam "
-        "(Painleve's paradox); expected less friction, or another position",
-        resolution->time, locking_friction(resolution, &resting.impulses, contact),
-        resolution->switches->contacts[resting.impulses.member[contact]].name);
-  free_resting(resolution, &resting);
-  return jams;
+  return paradox.how_many != NULL ? laws->resolve_paradox(resolution, &paradox, again) : problem;
 }

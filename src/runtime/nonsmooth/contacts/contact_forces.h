@@ -1,6 +1,8 @@
 /* Existence and uniqueness of the forces of contacts at rest, with the frictions that slide on them. */
 #pragma once
 
+#include "nonsmooth/cones/impulses.h"
+#include "nonsmooth/contacts/resting_forces.h"
 #include "nonsmooth/resolution.h"
 
 /*
@@ -19,5 +21,29 @@ const char *contact_forces_report_crushed(struct Resolution *resolution, size_t 
 /* Logs a contact that closes although no force changes its gap. */
 void contact_forces_report_fixed(const struct Resolution *resolution, size_t contact);
 
-/* Logs a sliding contact that friction jams at the end of the motion; false if there is none. */
-bool contact_forces_explain(struct Resolution *resolution);
+/* The problem of the contacts that take part; forces are in units of unit[]. */
+struct RestingContacts {
+  struct ContactImpulses impulses;
+  struct RestingForces forces;
+  double *unit;                    /* unit of the force of each contact: 1 / sqrt(W_ii) */
+  enum RestingSolutions solutions; /* found so far */
+  void *block;
+};
+
+/* The names and the number in a message about missing forces. */
+struct Paradox {
+  const char *contact, *friction, *how_many; /* how_many solutions there are */
+};
+
+/*
+ * Lets the contacts at rest without sticking friction and the frictions that slide take part. True if a
+ * selected friction rests on a selected contact.
+ */
+bool choose_resting(struct Resolution *resolution);
+
+/*
+ * Sets up the problem. False, with *problem NULL, if no selected contact can move; with the reason, if M is singular or
+ * memory is missing.
+ */
+bool create_resting(struct Resolution *resolution, struct RestingContacts *resting, const char **problem);
+void free_resting(const struct Resolution *resolution, struct RestingContacts *resting);

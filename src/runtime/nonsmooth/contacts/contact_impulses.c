@@ -95,13 +95,6 @@ void contact_press(struct Resolution *resolution, size_t contact, double force) 
   set_contact_and_force(resolution, contact, false, force);
 }
 
-void set_friction(struct Resolution *resolution, size_t friction, double mode) {
-  const struct SwitchTable *switches = resolution->switches;
-  size_t plane = plane_of(switches, friction);
-  if (plane < switches->plane_count) switches->friction_laws->set_plane(resolution, plane, mode != 0.0);
-  else resolution_set_mode(resolution, switches->frictions[friction].mode, mode);
-}
-
 bool evaluate_velocities(struct Resolution *resolution) {
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
   struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);

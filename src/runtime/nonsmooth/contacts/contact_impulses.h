@@ -5,6 +5,7 @@
 #pragma once
 
 #include "nonsmooth/cones/impulses.h"
+#include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/resolution.h"
 #include "instance/active_constraints.h"
 
@@ -49,14 +50,6 @@ static inline double contact_force(const struct Resolution *resolution, size_t c
 
 /* Returns the largest size of the forces of closed contacts. */
 double largest_contact_force(const struct Resolution *resolution);
-
-/* True if the friction sticks in the present modes. */
-static inline bool friction_sticks(const struct Resolution *resolution, size_t friction) {
-  return friction_holds(resolution->instance, friction);
-}
-
-/* Sets the mode of a friction: 0 for sticking, else the sign of its velocity, which frictions in planes ignore. */
-void set_friction(struct Resolution *resolution, size_t friction, double mode);
 
 /* Evaluates the values after velocities have changed, with the last accelerations. False if that fails. */
 bool evaluate_velocities(struct Resolution *resolution);

@@ -461,5 +461,4 @@ const struct ContactLaws contact_laws = {.act = act_once,
                                          .share_load = contacts_share_load,
                                          .part = part,
                                          .lift_start = lift_start,
-                                         .check_gaps = check_gaps,
-                                         .explain = contact_forces_explain};
+                                         .check_gaps = check_gaps};

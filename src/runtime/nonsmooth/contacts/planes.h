@@ -1,10 +1,16 @@
-/* Sliding speeds of frictions, along a line or in a plane. */
+/* Modes and sliding speeds of frictions, along a line or in a plane. */
 #pragma once
 
 #include <math.h>
 
 #include "evaluation/evaluate.h"
+#include "instance/active_constraints.h"
 #include "nonsmooth/resolution.h"
+
+/* True if the friction sticks in the present modes. */
+static inline bool friction_sticks(const struct Resolution *resolution, size_t friction) {
+  return friction_holds(resolution->instance, friction);
+}
 
 /* Returns the mode of a friction in a plane. */
 static inline enum PlaneMode plane_mode(const struct Resolution *resolution, const struct PlaneMetadata *plane) {

@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "nonsmooth/contacts/contact_impulses.h"
-#include "nonsmooth/contacts/frictions.h"
+#include "nonsmooth/frictions/frictions.h"
 
 /*
  * True if a friction along a line rests: it sticks, or acts at rest with its limit. Its force has a part in that of those

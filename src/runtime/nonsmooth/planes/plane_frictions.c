@@ -14,8 +14,8 @@
 #include <string.h>
 
 #include "nonsmooth/contacts/contact_impulses.h"
-#include "nonsmooth/contacts/frictions.h"
-#include "nonsmooth/contacts/jams.h"
+#include "nonsmooth/frictions/frictions.h"
+#include "nonsmooth/frictions/jams.h"
 #include "evaluation/evaluate.h"
 #include "nonsmooth/planes/plane_rests.h"
 
@@ -146,8 +146,8 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
   }
   if (*again || !resolves) return NULL;
   *again = true;
-  return plane_rests_find(resolution) || plane_rests_find_with_contacts(resolution) ? NULL
-                                                                                    : reject_directions(resolution);
+  bool is_found = plane_rests_find(resolution) || plane_rests_find_with_contacts(resolution);
+  return is_found || resolution_ends_slip(resolution) ? NULL : reject_directions(resolution);
 }
 
 static const char *act(struct Resolution *resolution, bool *again) {
@@ -158,9 +158,9 @@ static const char *act(struct Resolution *resolution, bool *again) {
   if (problem == NULL && !*again && goes_round && plane_rests_find_with_contacts(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
   size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
-  if (problem == NULL && flipping < resolution->switches->friction_count)
-    return frictions_report_inconsistent(resolution, flipping);
-  return problem;
+  if (problem != NULL || flipping == resolution->switches->friction_count) return problem;
+  *again = resolution_ends_slip(resolution);
+  return *again ? NULL : frictions_report_inconsistent(resolution, flipping);
 }
 
 static void set_plane(struct Resolution *resolution, size_t plane, bool slides) {

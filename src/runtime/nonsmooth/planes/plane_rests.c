@@ -12,7 +12,7 @@
 #include <math.h>
 
 #include "nonsmooth/contacts/contact_impulses.h"
-#include "nonsmooth/contacts/frictions.h"
+#include "nonsmooth/frictions/frictions.h"
 #include "nonsmooth/planes/carried_forces.h"
 #include "nonsmooth/planes/lines_at_rest.h"
 #include "nonsmooth/planes/plane_stops.h"
@@ -280,13 +280,32 @@ static bool let_slow_slide(struct RestForces *forces) {
   return any;
 }
 
+/*
+ * Selects the frictions again, and lets slow ones slip along the directions of the forces. Along their small velocities
+ * there are no forces; these change the direction of the motion at once.
+ */
+static void choose_without_slow(struct Resolution *resolution, bool with_contacts) {
+  choose_at_rest(resolution, with_contacts);
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    enum Part *part = part_of_plane(resolution, &state);
+    if (*part == IS_SLOW) *part = TAKES_PART;
+  }
+}
+
 /* Finds the modes where not all can stick. False if that fails. */
-static bool find_slips(struct Resolution *resolution) {
+static bool find_slips(struct Resolution *resolution, bool with_contacts) {
   struct RestForces forces = {.resolution = resolution};
   release_others(resolution);
-  for (bool is_found = false; !is_found;) {
-    if (!rest_forces_find(&forces)) return false;
+  for (bool is_found = false, any_slides = false; !is_found;) {
+    if (!rest_forces_find(&forces)) {
+      if (!any_slides) return false;
+      choose_without_slow(resolution, with_contacts);
+      any_slides = false;
+      continue;
+    }
     is_found = forces.n == 0 || !let_slow_slide(&forces);
+    any_slides |= !is_found;
     if (!is_found) rest_forces_free(&forces);
   }
   bool is_done = forces.n == 0 || take_rests(&forces);
@@ -302,7 +321,7 @@ bool plane_rests_find(struct Resolution *resolution) {
   if (!try_to_stick(resolution)) return false;
   if (all_stick(resolution)) return bring_to_rest(resolution, stops);
   release_passing(resolution);
-  return find_slips(resolution) && bring_to_rest(resolution, stops);
+  return find_slips(resolution, false) && bring_to_rest(resolution, stops);
 }
 
 /* Lets frictions slide again on open contacts that take part: they have a force where these press. */
@@ -320,5 +339,5 @@ bool plane_rests_find_with_contacts(struct Resolution *resolution) {
   resolution->has_found_forces = true;
   choose_at_rest(resolution, true);
   slide_on_chosen(resolution);
-  return plane_stops_motion(resolution, &stops) && find_slips(resolution) && bring_to_rest(resolution, stops);
+  return plane_stops_motion(resolution, &stops) && find_slips(resolution, true) && bring_to_rest(resolution, stops);
 }

@@ -7,16 +7,15 @@
  * Stone, The Linear Complementarity Problem, chapter 4). Beyond FRICTION_FLIP_LIMIT switches of one friction jams.c
  * tries all modes; if that fails too, the motion ends with a message.
  */
-#include "nonsmooth/contacts/frictions.h"
+#include "nonsmooth/frictions/frictions.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdint.h>
 
 #include "detection/indicators.h"
-#include "nonsmooth/contacts/jams.h"
+#include "nonsmooth/frictions/jams.h"
 #include "nonsmooth/contacts/planes.h"
-#include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/tolerances.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
@@ -271,7 +270,7 @@ const char *frictions_act_beside(struct Resolution *resolution, bool keeps_overc
     double mode = friction_mode(resolution, &state);
     if (mode == state.mode || (keeps_overcome && friction_is_overcome(resolution, i))) continue;
     if (++resolution->flips[friction_indicator(resolution->switches, i)] > FRICTION_FLIP_LIMIT) {
-      *switched = jams_resolve(resolution);
+      *switched = jams_resolve(resolution) || resolution_ends_slip(resolution);
       return *switched                         ? NULL
              : resolution->has_several_motions ? neither
                                                : frictions_report_inconsistent(resolution, i);

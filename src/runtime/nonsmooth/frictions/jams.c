@@ -7,13 +7,12 @@
  * accelerations are one motion. The search ends at the second motion, and needs one evaluation of the accelerations
  * for each of at most MOST_COMBINATIONS combinations.
  */
-#include "nonsmooth/contacts/jams.h"
+#include "nonsmooth/frictions/jams.h"
 
 #include <math.h>
 #include <string.h>
 
 #include "nonsmooth/contacts/planes.h"
-#include "nonsmooth/contacts/contact_impulses.h"
 #include "evaluation/services.h"
 
 /* Combinations that are tried at most: 3^6, those of six frictions. */
