@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "evaluation/services.h"
+#include "nonsmooth/cones/cone_newton.h"
 #include "nonsmooth/cones/cone_search.h"
 #include "support/next_random.h"
 
@@ -41,6 +42,16 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
   struct Cones cones;
   if (!create_cones(resolution, impulses, rate, impulse, &cones)) return false;
   bool is_done = cones_find_impulses(&cones);
+  scratch_return(resolution->instance, SCRATCH_CONES);
+  return is_done;
+}
+
+bool cone_impulses_continue(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                            const double *rate, double *impulse) {
+  struct Cones cones;
+  if (!create_cones(resolution, impulses, rate, impulse, &cones)) return false;
+  bool is_done =
+      cones_fill_scales(&cones) && cones_relative_miss(&cones, cone_newton(&cones, cones.work)) <= law_nearly_holds;
   scratch_return(resolution->instance, SCRATCH_CONES);
   return is_done;
 }

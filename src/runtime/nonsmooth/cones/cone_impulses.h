@@ -11,6 +11,10 @@
 bool cone_impulses_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                         double *impulse);
 
+/* Continues from impulses of other rates by Newton's method. False if that fails. */
+bool cone_impulses_continue(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                            const double *rate, double *impulse);
+
 /*
  * Finds forces at rest: impulses of the same law, with the accelerations as rates. Where several sets of forces fulfil
  * it, these have a margin to their limits. error: twice the residual, a bound of the accelerations' errors. False if

@@ -13,8 +13,8 @@
  * rest, or if a contact that its force has opened would close again. If no open contact approaches, the present
  * forces are a solution, and only their uniqueness is examined (resting_forces.c). It is not examined while a
  * friction begins to slide, since its direction would differ in another solution. If an open contact approaches, the
- * solution found sets the contacts. If there is none, or more than one, or existence is unknown, the motion ends with
- * a message.
+ * solution found sets the contacts. If there is none, or not only one, an impulse may end the slip (sliding_laws.c).
+ * Else the motion ends with a message.
  */
 #include "nonsmooth/contacts/contact_forces.h"
 

@@ -23,6 +23,18 @@ bool is_touching(const struct Resolution *resolution, size_t contact) {
   return resolution->value[gap] <= error_bound || is_hit(resolution, contact_indicator(resolution->switches, contact));
 }
 
+size_t choose_touching(struct Resolution *resolution, enum Part frictions) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t count = 0;
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    bool touches = is_touching(resolution, i);
+    resolution->part[i] = touches ? TAKES_PART : LEFT_OUT;
+    count += touches ? 1 : 0;
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = frictions;
+  return count;
+}
+
 bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
   size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
   if (contact_is_closed(resolution, contact)) return true;

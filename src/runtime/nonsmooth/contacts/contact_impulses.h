@@ -69,6 +69,9 @@ double sliding_share(const struct Resolution *resolution, size_t friction);
 /* True if the gap is at most 0 within rounding, or its zero has been located at this event. */
 bool is_touching(const struct Resolution *resolution, size_t contact);
 
+/* Lets the contacts that touch take part; frictions: the part of all frictions. Returns the number of contacts. */
+size_t choose_touching(struct Resolution *resolution, enum Part frictions);
+
 /* True if the contact is closed, or touches and does not open faster than rounding. */
 bool contact_is_at_rest(const struct Resolution *resolution, size_t contact);
 

@@ -174,19 +174,6 @@ static const char *report_singular_impact(const struct Resolution *resolution, s
   return impact_without_solution;
 }
 
-/* Lets the contacts that touch take part, without frictions. Returns their number. */
-static int choose_touching(struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  int count = 0;
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    bool touches = is_touching(resolution, i);
-    resolution->part[i] = touches ? TAKES_PART : LEFT_OUT;
-    count += touches ? 1 : 0;
-  }
-  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = LEFT_OUT;
-  return count;
-}
-
 /* True if rates alone decide on the impacts of the contacts that take part. */
 static bool rates_decide(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
@@ -235,7 +222,7 @@ static void take_single(struct Resolution *resolution, const struct ContactImpul
 static bool take_singles(struct Resolution *resolution) {
   struct ContactImpulses impulses;
   int before = resolution->impacts;
-  if (before <= choose_touching(resolution) || !rates_decide(resolution)) return true;
+  if (before <= (int)choose_touching(resolution, LEFT_OUT) || !rates_decide(resolution)) return true;
   if (!contact_impulses_create(resolution, &impulses)) return false;
   for (size_t row = find_single(resolution, &impulses); row < impulses.count; row = find_single(resolution, &impulses))
     take_single(resolution, &impulses, row);

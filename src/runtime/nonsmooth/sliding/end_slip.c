@@ -7,15 +7,21 @@
 #include "nonsmooth/sliding/end_slip.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "evaluation/services.h"
 #include "nonsmooth/cones/cone_impulses.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/impacts.h"
 #include "nonsmooth/contacts/planes.h"
+#include "nonsmooth/tolerances.h"
 
-/* tau, relative to the time in which the accelerations without contact forces would cause the largest slip. */
-static const double short_share = 1e-7;
+/*
+ * tau, relative to the time in which the accelerations without contact forces would cause the largest slip. Longer times
+ * are tried if no impulses are found for the shortest, whose effect is close to rounding, and their impulses continued.
+ */
+static const double short_shares[] = {1e-7, 1e-5, 1e-3};
+enum { SHARES = sizeof short_shares / sizeof *short_shares };
 
 /* Changes of the rates by less than this multiple of tau a are those of finite forces. */
 static const double finite_forces = 20.0;
@@ -27,22 +33,9 @@ enum { SLIP_LIMIT = 100 };
 struct ShortStep {
   struct Resolution *resolution;
   struct ContactImpulses impulses;
-  double *impulse; /* of each row */
-  double ahead;    /* largest change of a rate by tau a */
+  double *impulse, *work; /* of each row; workspace */
+  double ahead;           /* largest change of a rate by tau a */
 };
-
-/* Selects all contacts that touch, and all frictions. Returns the number of contacts. */
-static size_t choose_all_touching(struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  size_t count = 0;
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    bool touches = is_touching(resolution, i);
-    resolution->part[i] = touches ? TAKES_PART : LEFT_OUT;
-    count += touches ? 1 : 0;
-  }
-  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = TAKES_PART;
-  return count;
-}
 
 /* Opens the contacts that touch, and lets all frictions slide. */
 static void release_chosen(struct Resolution *resolution) {
@@ -52,21 +45,22 @@ static void release_chosen(struct Resolution *resolution) {
     if (resolution->part[i] != LEFT_OUT) set_contact(resolution, i, false);
 }
 
-/* Adds the changes of the rates in the time tau. */
-static void add_changes_ahead(struct ShortStep *step) {
+/* Fills the rates after the time tau, given its share. */
+static void fill_rates_ahead(struct ShortStep *step, double share) {
   const struct Resolution *resolution = step->resolution;
   struct ContactImpulses *impulses = &step->impulses;
   double largest = 0.0, slip = 0.0;
-  double *acceleration = step->impulse; /* filled later */
+  double *acceleration = step->work;
   for (size_t row = 0; row < impulses->count; row++) {
     bool is_contact = row < impulses->contact_count;
-    size_t slot = is_contact ? contact_slot(resolution->switches, impulses->member[row], CONTACT_ACCELERATION)
-                             : friction_slot(resolution->switches, impulses->member[row], FRICTION_RATE);
-    acceleration[row] = resolution->value[slot];
+    size_t slot = is_contact ? contact_slot(resolution->switches, impulses->member[row], 0)
+                             : friction_slot(resolution->switches, impulses->member[row], 0);
+    impulses->rate[row] = resolution->value[slot + (is_contact ? (size_t)CONTACT_RATE : (size_t)FRICTION_VELOCITY)];
+    acceleration[row] = resolution->value[slot + (is_contact ? (size_t)CONTACT_ACCELERATION : (size_t)FRICTION_RATE)];
     largest = fmax(largest, fabs(acceleration[row]));
     if (!is_contact) slip = fmax(slip, fabs(impulses->rate[row]));
   }
-  double tau = largest > 0.0 ? short_share * slip / largest : 0.0;
+  double tau = largest > 0.0 ? share * slip / largest : 0.0;
   for (size_t row = 0; row < impulses->count; row++) impulses->rate[row] += tau * acceleration[row];
   step->ahead = tau * largest;
 }
@@ -92,11 +86,17 @@ static bool is_impulsive(const struct ShortStep *step) {
   return any;
 }
 
-/* Warns at most once an instance that an impulse has ended a slip; names the contact with the largest one. */
+/*
+ * Warns at most once an instance that an impulse has ended a slip beyond the errors of rest; names the contact with the
+ * largest one.
+ */
 static void report_ended_slip(const struct ShortStep *step) {
   const struct Resolution *resolution = step->resolution;
   size_t most = 0;
-  if (resolution->instance->reported_ended_slip) return;
+  double slip = 0.0;
+  for (size_t row = step->impulses.contact_count; row < step->impulses.count; row++)
+    slip = fmax(slip, fabs(step->impulses.rate[row]));
+  if (resolution->instance->reported_ended_slip || slip <= tolerances_of(resolution).rest) return;
   for (size_t row = 1; row < step->impulses.contact_count; row++)
     if (own_change(step, row) > own_change(step, most)) most = row;
   resolution->instance->reported_ended_slip = true;
@@ -127,22 +127,39 @@ static bool take_impulses(const struct ShortStep *step) {
   return let_stopped_slip(resolution);
 }
 
+/* Continues the impulses of a longer time to the shortest; keeps them if that fails. */
+static void continue_impulses(struct ShortStep *step, double share) {
+  size_t size = step->impulses.count * sizeof *step->impulse;
+  fill_rates_ahead(step, short_shares[0]);
+  memcpy(step->work, step->impulse, size);
+  if (cone_impulses_continue(step->resolution, &step->impulses, step->impulses.rate, step->impulse)) return;
+  memcpy(step->impulse, step->work, size);
+  fill_rates_ahead(step, share);
+}
+
 /* Finds the impulses of a step, with the modes of release_chosen(). False if there are none. */
 static bool find_impulses_of_step(struct ShortStep *step) {
-  add_changes_ahead(step);
-  return step->ahead > 0.0 && cone_impulses_find(step->resolution, &step->impulses, step->impulses.rate, step->impulse);
+  bool is_found = false;
+  for (int i = 0; i < SHARES && !is_found; i++) {
+    fill_rates_ahead(step, short_shares[i]);
+    is_found =
+        step->ahead > 0.0 && cone_impulses_find(step->resolution, &step->impulses, step->impulses.rate, step->impulse);
+    if (is_found && i > 0) continue_impulses(step, short_shares[i]);
+  }
+  return is_found;
 }
 
 /* Takes a step from the modes of release_chosen(), and restores the modes that were kept. */
 static bool take_step(struct ShortStep *step) {
   struct Resolution *resolution = step->resolution;
   size_t count = step->impulses.count;
-  step->impulse = scratch_take(resolution->instance, SCRATCH_IMPACT, count * sizeof *step->impulse);
+  step->impulse = scratch_take(resolution->instance, SCRATCH_IMPACT, 2 * count * sizeof *step->impulse);
   if (step->impulse == NULL) {
     solver_is_out_of_memory(resolution->instance);
     resolution_restore_modes(resolution);
     return false;
   }
+  step->work = step->impulse + count;
   bool is_found = find_impulses_of_step(step);
   resolution_restore_modes(resolution);
   bool is_done = is_found && take_impulses(step);
@@ -153,7 +170,7 @@ static bool take_step(struct ShortStep *step) {
 bool end_slip(struct Resolution *resolution) {
   struct ShortStep step = {.resolution = resolution};
   bool changed = resolution->changed;
-  if (resolution->occasion == AT_START || choose_all_touching(resolution) < 2) return false;
+  if (resolution->occasion == AT_START || choose_touching(resolution, TAKES_PART) < 2) return false;
   resolution_keep_modes(resolution);
   release_chosen(resolution);
   bool is_done = resolution_evaluate(resolution) && contact_impulses_create(resolution, &step.impulses);

@@ -4,8 +4,8 @@
 #include "evaluation/services.h"
 #include "nonsmooth/contacts/contact_forces.h"
 #include "nonsmooth/contacts/contact_impulses.h"
-#include "nonsmooth/sliding/end_slip.h"
 #include "nonsmooth/contacts/planes.h"
+#include "nonsmooth/sliding/end_slip.h"
 #include "nonsmooth/tolerances.h"
 
 /* Number of solutions, as messages say it. */
