@@ -243,13 +243,13 @@ def test_table_turns_about_a_foot(name, draw, tolerance, time):
     run_pushed(name, values, time, 0.2, tolerance)
 
 
-@pytest.mark.parametrize("values, tolerance, impulses", [
-    ({"mu": 1.0899115858256776, "rate": 11.83479078491352, "dir": 4.440743470547105, "off": -0.25606297722320964}, 1e-8, 0),
-    ({"mu": 1.0379940897225186, "rate": 14.273263387031172, "dir": 0.6362746292466653, "off": -0.047663312645653544}, 1e-6, 1)])  # fmt: skip
-def test_a_table_slides_on(values, tolerance, impulses):
+@pytest.mark.parametrize("values, tolerance", [
+    ({"mu": 1.0899115858256776, "rate": 11.83479078491352, "dir": 4.440743470547105, "off": -0.25606297722320964}, 1e-8),
+    ({"mu": 1.0379940897225186, "rate": 14.273263387031172, "dir": 0.6362746292466653, "off": -0.047663312645653544}, 1e-6)])  # fmt: skip
+def test_a_table_slides_on(values, tolerance):
     """
-    A foot at 2e-8 m/s has no forces along its velocity: it slips along its force. The forces of a foot grow without bound, until an impulse ends
-    its slip.
+    A foot at 2e-8 m/s has no forces along its velocity: it slips along its force. The forces of another one would have no bound. An impulse ends
+    its slip, without a warning, as this is within the errors of rest.
     """
     instance = fmu.Instance("TableOnFour").initialize(values, tolerance)
     energies = [instance.get("totalEnergy")]
@@ -257,7 +257,7 @@ def test_a_table_slides_on(values, tolerance, impulses):
         instance.step(0.02)
         energies.append(instance.get("totalEnergy") - instance.get("given"))
     assert np.diff(energies).max() < 1e-6
-    assert sum("an impulse ends the slip" in text for _, _, text in instance.messages) == impulses
+    assert not any("an impulse ends the slip" in text for _, _, text in instance.messages)
     instance.free()
 
 
