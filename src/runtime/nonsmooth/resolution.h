@@ -65,7 +65,7 @@ struct Resolution {
   bool has_searched_jam;                  /* all modes of frictions at rest were tried */
   bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
   int impacts, plastic_impacts, lifts;    /* plastic_impacts: those of all contacts that touch */
-  int short_steps;                        /* those of the event that have ended a slip */
+  int ended_slips;                        /* by impulses, end_slip.c */
   double lost_speed;                      /* largest rate of a gap at which a contact came to rest in the event */
   double least_acceleration; /* smaller ones are rounding errors of the last solution for frictions at rest */
 };

@@ -15,8 +15,7 @@
  * A solution costs O(n^3), and usually there are about as many as contacts that press.
  *
  * Unlike sweeps and Newton's method, it solves problems near singularity. An example is a ball that is wedged between
- * others in a row from wall to wall. A contact that depends on the set is left out until the impulses
- * change.
+ * others in a row from wall to wall. A contact that depends on the set is left out until the impulses change.
  */
 #include "nonsmooth/cones/active_set.h"
 

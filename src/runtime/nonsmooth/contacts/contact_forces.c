@@ -299,15 +299,14 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   slides &= resting.impulses.friction_count > 0;
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
-  enum RestingSolutions *solutions = &resting.solutions;
-  if (slides && (closes || !is_unclear)) *solutions = resting_forces_solve(&resting.forces, !closes);
+  if (slides && (closes || !is_unclear)) resting.solutions = resting_forces_solve(&resting.forces, !closes);
   if (!slides && closes && !resting_forces_press(&resting.forces)) {
     log_crushed(resolution, &resting.impulses, sinking);
     problem = crushed;
-  } else if (*solutions != ONE_MOTION && *solutions != PERHAPS_OTHERS)
+  } else if (resting.solutions != ONE_MOTION && resting.solutions != PERHAPS_OTHERS)
     laws->find_paradox(resolution, &resting, &paradox);
   else if (closes) *again = take_solution(resolution, &resting);
-  if (*solutions == PERHAPS_OTHERS) laws->report_others(resolution, &resting);
+  if (resting.solutions == PERHAPS_OTHERS) laws->report_others(resolution, &resting);
   free_resting(resolution, &resting);
   return paradox.how_many != NULL ? laws->resolve_paradox(resolution, &paradox, again) : problem;
 }

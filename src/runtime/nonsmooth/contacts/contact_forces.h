@@ -26,7 +26,7 @@ struct RestingContacts {
   struct ContactImpulses impulses;
   struct RestingForces forces;
   double *unit;                    /* unit of the force of each contact: 1 / sqrt(W_ii) */
-  enum RestingSolutions solutions; /* found so far */
+  enum RestingSolutions solutions; /* their number; ONE_MOTION if it is not examined */
   void *block;
 };
 

@@ -142,6 +142,13 @@ static void let_all_slide(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++) set_friction(resolution, i, 1.0);
 }
 
+void impact_leave_open(struct Resolution *resolution) {
+  open_all(resolution);
+  let_unpressed_slide(resolution);
+  resolution->jumped = true;
+  resolution->impacts++;
+}
+
 /* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
 static bool take_impact(struct Resolution *resolution, size_t contact) {
   bool passes = passes_on(resolution, contact);
@@ -156,10 +163,7 @@ static bool take_impact(struct Resolution *resolution, size_t contact) {
   open_all(resolution);
   bool done = impacts_take(resolution, passes);
   resolution_restore_modes(resolution);
-  open_all(resolution);
-  let_unpressed_slide(resolution);
-  resolution->jumped = true;
-  resolution->impacts++;
+  impact_leave_open(resolution);
   if (!passes) resolution->plastic_impacts++;
   return done && let_stopped_slip(resolution);
 }

@@ -6,6 +6,9 @@
 /* The reason why the motion ends where no impulses are found. */
 extern const char impact_without_solution[];
 
+/* Opens all contacts behind an impact, whose impulses have changed the velocities. */
+void impact_leave_open(struct Resolution *resolution);
+
 /*
  * Takes impacts while contacts that touch close; all contacts are open then. False, with *problem as it was, if none
  * closes. *problem: NULL, or the reason why the motion cannot continue.

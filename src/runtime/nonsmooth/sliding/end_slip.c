@@ -12,6 +12,7 @@
 #include "evaluation/services.h"
 #include "nonsmooth/cones/cone_impulses.h"
 #include "nonsmooth/contacts/contact_impulses.h"
+#include "nonsmooth/contacts/impact_sequence.h"
 #include "nonsmooth/contacts/impacts.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/tolerances.h"
@@ -26,7 +27,7 @@ enum { SHARES = sizeof short_shares / sizeof *short_shares };
 /* Changes of the rates by less than this multiple of tau a are those of finite forces. */
 static const double finite_forces = 20.0;
 
-/* Short steps of an event that may change the velocities. */
+/* Slips that are ended in an event; more of them have no end. */
 enum { SLIP_LIMIT = 100 };
 
 /* A short step. */
@@ -35,6 +36,7 @@ struct ShortStep {
   struct ContactImpulses impulses;
   double *impulse, *work; /* of each row; workspace */
   double ahead;           /* largest change of a rate by tau a */
+  double slip;            /* the largest before the step */
 };
 
 /* Opens the contacts that touch, and lets all frictions slide. */
@@ -49,8 +51,9 @@ static void release_chosen(struct Resolution *resolution) {
 static void fill_rates_ahead(struct ShortStep *step, double share) {
   const struct Resolution *resolution = step->resolution;
   struct ContactImpulses *impulses = &step->impulses;
-  double largest = 0.0, slip = 0.0;
+  double largest = 0.0;
   double *acceleration = step->work;
+  step->slip = 0.0;
   for (size_t row = 0; row < impulses->count; row++) {
     bool is_contact = row < impulses->contact_count;
     size_t slot = is_contact ? contact_slot(resolution->switches, impulses->member[row], 0)
@@ -58,9 +61,9 @@ static void fill_rates_ahead(struct ShortStep *step, double share) {
     impulses->rate[row] = resolution->value[slot + (is_contact ? (size_t)CONTACT_RATE : (size_t)FRICTION_VELOCITY)];
     acceleration[row] = resolution->value[slot + (is_contact ? (size_t)CONTACT_ACCELERATION : (size_t)FRICTION_RATE)];
     largest = fmax(largest, fabs(acceleration[row]));
-    if (!is_contact) slip = fmax(slip, fabs(impulses->rate[row]));
+    if (!is_contact) step->slip = fmax(step->slip, fabs(impulses->rate[row]));
   }
-  double tau = largest > 0.0 ? share * slip / largest : 0.0;
+  double tau = largest > 0.0 ? share * step->slip / largest : 0.0;
   for (size_t row = 0; row < impulses->count; row++) impulses->rate[row] += tau * acceleration[row];
   step->ahead = tau * largest;
 }
@@ -93,10 +96,7 @@ static bool is_impulsive(const struct ShortStep *step) {
 static void report_ended_slip(const struct ShortStep *step) {
   const struct Resolution *resolution = step->resolution;
   size_t most = 0;
-  double slip = 0.0;
-  for (size_t row = step->impulses.contact_count; row < step->impulses.count; row++)
-    slip = fmax(slip, fabs(step->impulses.rate[row]));
-  if (resolution->instance->reported_ended_slip || slip <= tolerances_of(resolution).rest) return;
+  if (resolution->instance->reported_ended_slip || step->slip <= tolerances_of(resolution).rest) return;
   for (size_t row = 1; row < step->impulses.contact_count; row++)
     if (own_change(step, row) > own_change(step, most)) most = row;
   resolution->instance->reported_ended_slip = true;
@@ -104,27 +104,6 @@ static void report_ended_slip(const struct ShortStep *step) {
               "time %g: the forces of contacts that slide, such as '%s', have no solution (Painleve's paradox); an "
               "impulse ends the slip, as it does each further time; expected less friction for finite forces",
               resolution->time, resolution->switches->contacts[step->impulses.member[most]].name);
-}
-
-/* Changes the velocities, and opens all contacts. False if the energy would grow, or after too many steps. */
-static bool take_impulses(const struct ShortStep *step) {
-  struct Resolution *resolution = step->resolution;
-  const struct SwitchTable *switches = resolution->switches;
-  if (resolution->short_steps++ == SLIP_LIMIT || !is_impulsive(step) || gains_energy(&step->impulses, step->impulse))
-    return false;
-  report_ended_slip(step);
-  for (size_t row = 0; row < step->impulses.count; row++)
-    impact_add(resolution, &step->impulses, row, step->impulse[row]);
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    if (resolution->part[i] != LEFT_OUT) resolution->forced[i] = UNFORCED;
-    set_contact(resolution, i, false);
-  }
-  for (size_t i = 0; i < switches->friction_count; i++) resolution->flips[friction_indicator(switches, i)] = 0.0;
-  let_unpressed_slide(resolution);
-  resolution->jumped = true;
-  resolution->has_found_forces = false;
-  resolution->impacts++;
-  return let_stopped_slip(resolution);
 }
 
 /* Continues the impulses of a longer time to the shortest; keeps them if that fails. */
@@ -149,35 +128,47 @@ static bool find_impulses_of_step(struct ShortStep *step) {
   return is_found;
 }
 
-/* Takes a step from the modes of release_chosen(), and restores the modes that were kept. */
+/* Changes the velocities by a step from the modes of release_chosen(). False if no slip ends, or the energy would grow. */
 static bool take_step(struct ShortStep *step) {
   struct Resolution *resolution = step->resolution;
   size_t count = step->impulses.count;
   step->impulse = scratch_take(resolution->instance, SCRATCH_IMPACT, 2 * count * sizeof *step->impulse);
   if (step->impulse == NULL) {
     solver_is_out_of_memory(resolution->instance);
-    resolution_restore_modes(resolution);
     return false;
   }
   step->work = step->impulse + count;
-  bool is_found = find_impulses_of_step(step);
-  resolution_restore_modes(resolution);
-  bool is_done = is_found && take_impulses(step);
+  bool is_done = find_impulses_of_step(step) && is_impulsive(step) && !gains_energy(&step->impulses, step->impulse);
+  if (is_done) report_ended_slip(step);
+  for (size_t row = 0; row < count && is_done; row++) impact_add(resolution, &step->impulses, row, step->impulse[row]);
   scratch_return(resolution->instance, SCRATCH_IMPACT);
   return is_done;
 }
 
+/* Lets all contacts and frictions find their modes anew behind a step. */
+static bool begin_anew(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (resolution->part[i] != LEFT_OUT) resolution->forced[i] = UNFORCED;
+  for (size_t i = 0; i < switches->friction_count; i++) resolution->flips[friction_indicator(switches, i)] = 0.0;
+  resolution->has_found_forces = false;
+  resolution->ended_slips++;
+  impact_leave_open(resolution);
+  return let_stopped_slip(resolution);
+}
+
 bool end_slip(struct Resolution *resolution) {
   struct ShortStep step = {.resolution = resolution};
-  bool changed = resolution->changed;
-  if (resolution->occasion == AT_START || choose_touching(resolution, TAKES_PART) < 2) return false;
+  bool changed = resolution->changed, is_done = false;
+  if (resolution->occasion == AT_START || resolution->ended_slips == SLIP_LIMIT) return false;
+  if (choose_touching(resolution, TAKES_PART) < 2) return false;
   resolution_keep_modes(resolution);
   release_chosen(resolution);
-  bool is_done = resolution_evaluate(resolution) && contact_impulses_create(resolution, &step.impulses);
-  if (is_done) {
+  if (resolution_evaluate(resolution) && contact_impulses_create(resolution, &step.impulses)) {
     is_done = take_step(&step);
     contact_impulses_free(resolution, &step.impulses);
-  } else resolution_restore_modes(resolution);
+  }
+  resolution_restore_modes(resolution);
   resolution->changed = changed || is_done;
-  return is_done;
+  return is_done && begin_anew(resolution);
 }
