@@ -24,7 +24,8 @@ def solve(tmp_path_factory):
         given, elements = matrix[np.tril_indices(count)][places], len(column)
         column = np.concatenate([column, np.searchsorted(places, start), column[places]]).astype(np.uintp)
         coordinate = np.array([i + 1 if i < len(mass) else -1 for i in order], dtype=np.int32)
-        work = np.full(elements + len(given) + 1 + 2 * count + constraints * (constraints + 1) // 2, np.nan)
+        packed = elements + count + elements // 2 + 2  # SADDLE_PACKED of saddle.h
+        work = np.full(elements + len(given) + 1 + 2 * count + packed + constraints * (constraints + 1) // 2, np.nan)
         work[elements : elements + len(given)] = given
         right = np.zeros(4 * count)
         right[:count] = np.concatenate([forces, rates])[order]

@@ -17,6 +17,7 @@
 
 #include <math.h>
 #include <stdbool.h>
+#include <stdint.h>
 #include <string.h>
 
 #include "ldlt.h"
@@ -32,24 +33,122 @@ static struct Given given_of(size_t n, const size_t *start, const size_t *column
   return (struct Given){.start = first, .column = first + n + 1, .matrix = m + start[n]};
 }
 
-/* Subtracts K x from rest, with the first n rows of K. */
-static void subtract_product(size_t n, const struct Given *given, const Real *x, Real *rest) {
-  for (size_t i = 0; i < n; i++)
+/* Returns the offset of the smallest relative pivot, which follows L and K. */
+static size_t slot_of_weakest(size_t n, const size_t *start, const size_t *column) {
+  return start[n] + column[start[n] + n];
+}
+
+/*
+ * L below its diagonal without the elements that are 0, as most contacts of a heap are open. The numbers of a list follow
+ * the elements: of rows in use, these rows, where each row of L begins, and the columns of its elements.
+ */
+struct Packed {
+  size_t n;
+  Real *element, *list;
+};
+
+static struct Packed packed_of(size_t n, const size_t *start, const size_t *column, const Real *m) {
+  Real *element = (Real *)m + slot_of_weakest(n, start, column) + 1 + 2 * n;
+  return (struct Packed){.n = n, .element = element, .list = element + start[n]};
+}
+
+/* The list has numbers of half the size of a double. */
+static size_t listed(const struct Packed *packed, size_t i) {
+  uint32_t number;
+  memcpy(&number, (const char *)packed->list + i * sizeof number, sizeof number);
+  return number;
+}
+
+static void list(const struct Packed *packed, size_t i, size_t listed_number) {
+  const uint32_t number = (uint32_t)listed_number;
+  memcpy((char *)packed->list + i * sizeof number, &number, sizeof number);
+}
+
+static size_t used_count(const struct Packed *packed) {
+  return listed(packed, 0);
+}
+
+/* Returns a row in use: of a coordinate, or of a constraint whose row of K is not 0. */
+static size_t used_row(const struct Packed *packed, size_t i) {
+  return listed(packed, 1 + i);
+}
+
+static size_t packed_start(const struct Packed *packed, size_t row) {
+  return listed(packed, 1 + packed->n + row);
+}
+
+static size_t packed_column(const struct Packed *packed, size_t k) {
+  return listed(packed, 2 + 2 * packed->n + k);
+}
+
+static void pack_nothing(const struct Packed *packed) {
+  list(packed, 0, 0);
+  list(packed, 1 + packed->n, 0);
+}
+
+static void use_row(const struct Packed *packed, size_t row) {
+  size_t count = used_count(packed);
+  list(packed, 1 + count, row);
+  list(packed, 0, count + 1);
+}
+
+/* Packs the next row of L; one without elements of K has none. */
+static void pack_row(const struct Packed *packed, const size_t *start, const size_t *column, const Real *m, size_t i) {
+  size_t end = packed_start(packed, i);
+  for (size_t k = start[i]; k + 1 < start[i + 1]; k++) {
+    Condition is_part = m[k] != 0.0;
+    if (!ANYWHERE(is_part)) continue;
+    packed->element[end] = m[k];
+    list(packed, 2 + 2 * packed->n + end++, column[k]);
+  }
+  list(packed, 2 + packed->n + i, end);
+}
+
+static void pack_empty_row(const struct Packed *packed, size_t i) {
+  list(packed, 2 + packed->n + i, packed_start(packed, i));
+}
+
+/* Subtracts K x from rest, with the rows of K below n. */
+static void subtract_product(size_t n, const struct Packed *packed, const struct Given *given, const Real *x,
+                             Real *rest) {
+  for (size_t used = 0; used < used_count(packed) && used_row(packed, used) < n; used++) {
+    size_t i = used_row(packed, used);
     for (size_t k = given->start[i]; k < given->start[i + 1]; k++) {
       size_t j = given->column[k];
       rest[i] -= given->matrix[k] * x[j];
       if (i != j) rest[j] -= given->matrix[k] * x[i];
     }
+  }
+}
+
+/* Solves L D L^T x = b in the rows below n, in place. */
+static void solve_packed(size_t n, const struct Packed *packed, const size_t *start, const Real *m, Real *x) {
+  size_t count = used_count(packed);
+  for (size_t used = 0; used < count && used_row(packed, used) < n; used++) {
+    size_t i = used_row(packed, used);
+    if (ldlt_is_idle(m[start[i + 1] - 1])) continue;
+    size_t end = packed_start(packed, i + 1);
+    for (size_t k = packed_start(packed, i); k < end; k++) x[i] -= packed->element[k] * x[packed_column(packed, k)];
+  }
+  for (size_t i = 0; i < n; i++) x[i] /= m[start[i + 1] - 1];
+  for (size_t used = count; used-- > 0;) {
+    size_t i = used_row(packed, used);
+    if (i >= n || ldlt_is_idle(m[start[i + 1] - 1])) continue;
+    size_t end = packed_start(packed, i + 1);
+    for (size_t k = packed_start(packed, i); k < end; k++) x[packed_column(packed, k)] -= packed->element[k] * x[i];
+  }
 }
 
 /* Computes x = L^-T e_i in the rows up to i. */
-static void combine(const size_t *start, const size_t *column, const Real *m, size_t i, Real *x) {
+static void combine(const struct Packed *packed, size_t i, Real *x) {
   memset(x, 0, i * sizeof *x);
   x[i] = REAL(1.0);
   for (size_t row = i + 1; row-- > 0;) {
     const Real known = x[row];
     Condition has_part = known != 0.0;
-    for (size_t k = start[row]; ANYWHERE(has_part) && k + 1 < start[row + 1]; k++) x[column[k]] -= m[k] * known;
+    if (!ANYWHERE(has_part)) continue;
+    size_t end = packed_start(packed, row + 1);
+    for (size_t k = packed_start(packed, row); k < end; k++) x[packed_column(packed, k)] -= packed->element[k] * known;
   }
 }
 
@@ -68,13 +167,13 @@ static Real square_by_mass(const int *coordinate, const struct Given *given, siz
  * Returns minus the pivot of constraint i as w^T M w, where w is the motion that the constraints before it leave free
  * along it. This has the digits of w, while the pivot is a difference of squares. w is refined once by its residual.
  */
-static Real refined_pivot(const size_t *start, const size_t *column, const int *coordinate, const Real *m,
+static Real refined_pivot(const struct Packed *packed, const size_t *start, const int *coordinate, const Real *m,
                           const struct Given *given, size_t i, Real *w) {
   Real *rest = w + i + 1;
-  combine(start, column, m, i, w);
+  combine(packed, i, w);
   memset(rest, 0, (i + 1) * sizeof *rest);
-  subtract_product(i + 1, given, w, rest);
-  ldlt_solve(i, start, column, m, rest);
+  subtract_product(i + 1, packed, given, w, rest);
+  solve_packed(i, packed, start, m, rest);
   for (size_t row = 0; row < i; row++) w[row] += rest[row];
   return square_by_mass(coordinate, given, i, w);
 }
@@ -86,14 +185,9 @@ static Condition has_row(const struct Given *given, size_t i) {
   return sum != 0.0;
 }
 
-/* Returns the offset of the smallest relative pivot, which follows L and K. */
-static size_t slot_of_weakest(size_t n, const size_t *start, const size_t *column) {
-  return start[n] + column[start[n] + n];
-}
-
-/* Returns the offset of null-space vector c, which follows the workspace. */
+/* Returns the offset of null-space vector c, which follows the workspace and the packed rows. */
 static size_t slot_of_null_vector(size_t n, const size_t *start, const size_t *column, size_t c) {
-  return slot_of_weakest(n, start, column) + 1 + 2 * n + c * (c + 1) / 2;
+  return slot_of_weakest(n, start, column) + 1 + 2 * n + SADDLE_PACKED(start[n], n) + c * (c + 1) / 2;
 }
 
 /* Returns the component of c + 1 forces along a null-space vector, in units of the vector. */
@@ -123,7 +217,8 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
   Condition follows = BOTH(m[start[i + 1] - 1] == -INFINITY, has_row_of_k);
   null_vector[c] = REAL(0.0);
   if (!ANYWHERE(follows)) return;
-  combine(start, column, m, i, forces);
+  const struct Packed packed = packed_of(n, start, column, m);
+  combine(&packed, i, forces);
   for (size_t row = 0, k = 0; row < i; row++)
     if (coordinate[row] < 0) null_vector[k++] = coordinate[row] == SADDLE_NORM ? REAL(0.0) : forces[row];
   null_vector[c] = REAL(1.0);
@@ -133,8 +228,25 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
   null_vector[c] = WHERE(follows, 1.0 / length, 0.0);
 }
 
+/* Packs L where a null-space vector or a refinement needs it. */
+static void pack_all(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m) {
+  const struct Given given = given_of(n, start, column, m);
+  const struct Packed packed = packed_of(n, start, column, m);
+  bool is_needed = ANYWHERE(saddle_is_weak(slot_of_weakest(n, start, column), m));
+  for (size_t i = 0; i < n && !is_needed; i++)
+    is_needed = coordinate[i] < 0 && ldlt_is_idle(m[start[i + 1] - 1]) && ANYWHERE(has_row(&given, i));
+  pack_nothing(&packed);
+  for (size_t i = 0; i < n && is_needed; i++) {
+    bool is_used = coordinate[i] > 0 || ANYWHERE(has_row(&given, i));
+    if (is_used) use_row(&packed, i);
+    if (is_used) pack_row(&packed, start, column, m, i);
+    else pack_empty_row(&packed, i);
+  }
+}
+
 void saddle_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   const struct Given given = given_of(n, start, column, m);
+  pack_all(n, start, column, coordinate, m);
   for (size_t i = 0, c = 0; i < n; i++)
     if (coordinate[i] < 0) find_null_vector(n, start, column, coordinate, m, i, c++, has_row(&given, i));
 }
@@ -143,15 +255,17 @@ void saddle_null_vector(size_t n, const size_t *start, const size_t *column, con
  * Computes the elements L_ij D_j of row i before the diagonal, and K_ii on it. spread: n numbers, all 0 before and
  * afterwards, which hold the row by columns, so that products with the rows j need no search for common columns.
  */
-static void eliminate_row(const size_t *start, const size_t *column, Real *m, const struct Given *given, size_t i,
-                          Real *spread) {
+static void eliminate_row(const struct Packed *packed, const size_t *start, const size_t *column, Real *m,
+                          const struct Given *given, size_t i, Real *spread) {
   size_t last = start[i + 1] - 1;
   for (size_t k = given->start[i]; k < given->start[i + 1]; k++) spread[given->column[k]] = given->matrix[k];
   for (size_t k = start[i]; k < last; k++) {
     size_t j = column[k], diagonal = start[j + 1] - 1;
     if (ldlt_is_idle(m[diagonal])) continue;
     Real sum = REAL(0.0);
-    for (size_t e = diagonal; e-- > start[j];) sum += m[e] * spread[column[e]];
+    size_t first = packed_start(packed, j);
+    for (size_t e = packed_start(packed, j + 1); e-- > first;)
+      sum += packed->element[e] * spread[packed_column(packed, e)];
     spread[j] -= sum;
   }
   for (size_t k = start[i]; k <= last; k++) {
@@ -163,18 +277,21 @@ static void eliminate_row(const size_t *start, const size_t *column, Real *m, co
 size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   const struct Given given = given_of(n, start, column, m);
   Real *weakest = m + slot_of_weakest(n, start, column), *work = weakest + 1, *spread = work + n;
+  const struct Packed packed = packed_of(n, start, column, m);
   *weakest = REAL(1.0);
   memset(spread, 0, n * sizeof *spread);
+  pack_nothing(&packed);
   for (size_t i = 0, c = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
     Condition takes_part = has_row(&given, i);
     if (coordinate[i] < 0 && !ANYWHERE(takes_part)) {
       m[last] = REAL(-INFINITY);
       m[slot_of_null_vector(n, start, column, c) + c] = REAL(0.0);
+      pack_empty_row(&packed, i);
       c++;
       continue;
     }
-    eliminate_row(start, column, m, &given, i, spread);
+    eliminate_row(&packed, start, column, m, &given, i, spread);
     Real diagonal = m[last], pivot = diagonal, delassus = REAL(0.0);
     for (size_t k = start[i]; k < last; k++) {
       Real l = m[k] / m[start[column[k] + 1] - 1], term = l * m[k];
@@ -182,6 +299,8 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
       delassus += saddle_delassus(term);
       m[k] = l;
     }
+    use_row(&packed, i);
+    pack_row(&packed, start, column, m, i);
     if (coordinate[i] > 0) {
       REQUIRE(saddle_is_definite(pivot, diagonal), i + 1);
       m[last] = pivot;
@@ -190,7 +309,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     Real hold = -pivot;
     Condition doubts = saddle_is_doubtful(hold, delassus, *weakest);
     if (ANYWHERE(doubts)) {
-      hold = WHERE(doubts, refined_pivot(start, column, coordinate, m, &given, i, work), hold);
+      hold = WHERE(doubts, refined_pivot(&packed, start, coordinate, m, &given, i, work), hold);
       memset(spread, 0, n * sizeof *spread);
     }
     m[last] = saddle_pivot(hold, delassus, weakest);
@@ -205,10 +324,11 @@ void saddle_solve(size_t n, const size_t *start, const size_t *column, const Rea
   Condition is_weak = saddle_is_weak(slot_of_weakest(n, start, column), m);
   bool is_refined = ANYWHERE(is_weak);
   if (is_refined) memcpy(rest, x, n * sizeof *rest);
-  ldlt_solve(n, start, column, m, x);
+  const struct Packed packed = packed_of(n, start, column, m);
+  solve_packed(n, &packed, start, m, x);
   if (!is_refined) return;
-  subtract_product(n, &given, x, rest);
-  ldlt_solve(n, start, column, m, rest);
+  subtract_product(n, &packed, &given, x, rest);
+  solve_packed(n, &packed, start, m, rest);
   for (size_t i = 0; i < n; i++) x[i] = WHERE(is_weak, x[i] + rest[i], x[i]);
 }
 
@@ -233,7 +353,8 @@ static void restore_load(size_t n, const size_t *start, const size_t *column, co
     missing[i] = coordinate[i] < 0 ? x[i] - others[i] : REAL(0.0);
     load[i] = REAL(0.0);
   }
-  subtract_product(n, &given, missing, load);
+  const struct Packed packed = packed_of(n, start, column, m);
+  subtract_product(n, &packed, &given, missing, load);
   for (size_t i = 0; i < n; i++) missing[i] = coordinate[i] < 0 ? REAL(0.0) : load[i];
   saddle_solve(n, start, column, m, missing);
   for (size_t i = 0; i < n; i++)
