@@ -360,9 +360,14 @@ static inline size_t friction_indicator(const struct SwitchTable *switches, size
 
 /* Returns the plane of a friction along or across; plane_count for none. */
 static inline size_t plane_of(const struct SwitchTable *switches, size_t friction) {
-  size_t plane = 0;
-  while (plane < switches->plane_count && friction - switches->planes[plane].along > 1) plane++;
-  return plane;
+  size_t first = 0, end = switches->plane_count;
+  while (first < end) {
+    size_t middle = first + (end - first) / 2;
+    if (switches->planes[middle].along + 1 < friction) first = middle + 1;
+    else end = middle;
+  }
+  bool is_in_it = first < switches->plane_count && switches->planes[first].along <= friction;
+  return is_in_it ? first : switches->plane_count;
 }
 
 /* True if the friction is one of the two of a friction in a plane. */
@@ -481,9 +486,10 @@ struct ConstraintTable {
   /*
    * Computes the effect of impulses of contacts and frictions while the other constraints hold. impulse[n + m] holds
    * them at the indices of their constraint forces. response[2 n] holds the changes of the velocities, then the
-   * generalized impulses. A contact acts along its gap, a friction along its velocity. NULL without contacts.
+   * generalized impulses. A contact acts along its gap, a friction along its velocity. repeats: as in struct Seed. NULL
+   * without contacts.
    */
-  int (*respond)(const struct Point *point, const Real *impulse, Real *response);
+  int (*respond)(const struct Point *point, bool repeats, const Real *impulse, Real *response);
 };
 
 struct ReverseSweep;

@@ -77,7 +77,8 @@ static void linear(const double *parameter, const double *parameter_constants, d
   fill(FUNCTION_LINEAR, &point, NULL, matrix);
 }
 
-static int respond(const struct Point *point, const double *impulse, double *response) {
+static int respond(const struct Point *point, bool repeats, const double *impulse, double *response) {
+  (void)repeats;
   struct Frame frame = frame_of(point, NULL, response);
   frame.base[SPACE_SEED_ACCELERATION] = (double *)impulse;
   return instructions_run(&frame, interpreter.code[FUNCTION_RESPOND]);

@@ -235,9 +235,13 @@ static bool is_in_statements(const struct Program *program, enum FunctionName na
          (name == FUNCTION_DIRECTIONAL && !program->directional_is_table);
 }
 
-/* Two functions that begin with the same instructions, and share them if they are tables. */
+/*
+ * Two functions that begin with the same instructions, and share them if they are tables. One that is its own pair has a
+ * part that need not be repeated.
+ */
 static const enum FunctionName pairs[][2] = {{FUNCTION_DERIVATIVES, FUNCTION_ACCELERATIONS},
-                                             {FUNCTION_DIRECTIONAL, FUNCTION_ACCELERATIONS_ALONG}};
+                                             {FUNCTION_DIRECTIONAL, FUNCTION_ACCELERATIONS_ALONG},
+                                             {FUNCTION_RESPOND, FUNCTION_RESPOND}};
 
 /* Returns the functions of a pair in tables that have one with this name; NULL if there is none. */
 static const enum FunctionName *pair_of(const struct Program *program, enum FunctionName name) {

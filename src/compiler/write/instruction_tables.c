@@ -107,15 +107,22 @@ static char *name_of_part(enum FunctionName first, enum FunctionName second, int
   return format_text("%s%s", generated_functions[part == PAIR_SECOND_END ? second : first].name, suffixes[part]);
 }
 
+/* Returns the further condition of the part of a function that does not depend on the direction. */
+static const char *unless_repeated(enum FunctionName name) {
+  if (takes(name, "*seed")) return " && !seed->repeats";
+  return takes(name, "repeats") ? " && !repeats" : "";
+}
+
 void instruction_tables_pair(FILE *file, const struct Encoding *encoding, enum FunctionName first,
                              enum FunctionName second) {
   struct IrFunction *const *ir_functions = encoding->program->ir_functions;
   struct WordList words[PAIR_PARTS] = {0};
-  encode_pair(encoding, ir_functions[first], ir_functions[second], words);
+  bool is_single = second == first;
+  encode_pair(encoding, ir_functions[first], is_single ? NULL : ir_functions[second], words);
   for (int part = 0; part < PAIR_PARTS; part++)
     if (words[part].count > 0) write_words(file, name_of_part(first, second, part), &words[part]);
   fputs("\n", file);
-  for (int i = 0; i < 2; i++) {
+  for (int i = 0; i < (is_single ? 1 : 2); i++) {
     enum FunctionName name = i == 0 ? first : second;
     const int parts[] = {PAIR_STEADY, PAIR_COMMON, i == 0 ? PAIR_END : PAIR_SECOND_END};
     if (ir_functions[name] == NULL) continue;
@@ -124,7 +131,7 @@ void instruction_tables_pair(FILE *file, const struct Encoding *encoding, enum F
     for (int j = 0; j < 3; j++)
       if (words[parts[j]].count > 0)
         fprintf(file, "  if (singular == 0%s) singular = instructions_run(&frame, %s_code);\n",
-                j == 0 && takes(name, "*seed") ? " && !seed->repeats" : "", name_of_part(first, second, parts[j]));
+                j == 0 ? unless_repeated(name) : "", name_of_part(first, second, parts[j]));
     fputs("  return singular;\n}\n\n", file);
   }
 }

@@ -11,7 +11,7 @@ void instruction_tables_shared(FILE *file, const struct Encoding *encoding);
 void instruction_tables_function(FILE *file, const struct Encoding *encoding, enum FunctionName name,
                                  const struct IrFunction *ir);
 
-/* Writes two functions that begin with the same instructions; the second one may be missing. */
+/* Writes two functions that begin with the same instructions; the second one may be missing, or the first one again. */
 void instruction_tables_pair(FILE *file, const struct Encoding *encoding, enum FunctionName first,
                              enum FunctionName second);
 

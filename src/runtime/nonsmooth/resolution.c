@@ -49,6 +49,7 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   ARENA_NUMBERS(&arena, rows_of_matrix() + 2 * lagrangian.constraints.count, &resolution->correction);
   ARENA_TAKE(&arena, resolution->forced, switches->contact_count);
   ARENA_TAKE(&arena, resolution->part, modes);
+  ARENA_NUMBERS(&arena, modes, &resolution->guess);
   return (arena.next - (uintptr_t)work + sizeof(double) - 1) / sizeof(double);
 }
 

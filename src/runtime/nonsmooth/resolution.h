@@ -38,6 +38,7 @@ struct Resolution {
   double *first_mode;          /* of each contact, then each friction: at the start of the event */
   double *struck;              /* contacts: 1 if an impulse acted in the event, else 0 */
   enum Part *part;             /* of each contact, then each friction */
+  double *guess;               /* of each contact, then each friction: its force in a short step, by end_slip.c */
   double *start_gap;           /* of each contact: the most negative one that rounded start values gave; else 0 */
   double *moves;               /* of each resting velocity: its mode by find_resting */
   double *probe_input, *probe_acceleration, *probe_sums; /* workspace of find_resting */
@@ -64,6 +65,7 @@ struct Resolution {
   bool has_stuck_again;                   /* frictions at their limits at rest have stuck again */
   bool has_searched_jam;                  /* all modes of frictions at rest were tried */
   bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
+  int continued_forces;                   /* the same from that of a short step */
   int impacts, plastic_impacts, lifts;    /* plastic_impacts: those of all contacts that touch */
   int ended_slips;                        /* by impulses, end_slip.c */
   double lost_speed;                      /* largest rate of a gap at which a contact came to rest in the event */
@@ -151,8 +153,12 @@ struct FrictionLaws {
    * once in an event resolution. False if there are none. NULL without frictions in planes.
    */
   bool (*resolve_together)(struct Resolution *resolution);
+  /* plane_rests_continue(); NULL without frictions in planes. */
+  bool (*continue_together)(struct Resolution *resolution, bool stops);
   /* let_stopped_slip() of contact_impulses.h; NULL without frictions in planes. */
   bool (*slip_where_stopped)(struct Resolution *resolution);
+  /* True if the friction in a plane is so slow that it is tried to stick; NULL without any. */
+  bool (*is_slow)(const struct Resolution *resolution, size_t plane);
   /* Lets the friction in a plane slide or stick; NULL without any. */
   void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
 };

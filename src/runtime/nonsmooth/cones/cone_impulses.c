@@ -56,6 +56,16 @@ bool cone_impulses_continue(const struct Resolution *resolution, const struct Co
   return is_done;
 }
 
+bool cone_forces_continue(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                          const double *rate, double *force, double *error) {
+  struct Cones cones;
+  if (!create_cones(resolution, impulses, rate, force, &cones)) return false;
+  double miss = cones_fill_scales(&cones) ? cones_relative_miss(&cones, cone_newton(&cones, cones.work)) : INFINITY;
+  *error = 2.0 * miss * cones_largest(&cones);
+  scratch_return(resolution->instance, SCRATCH_CONES);
+  return miss <= law_roughly_holds;
+}
+
 bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                       double *force, double *error) {
   struct Cones cones;

@@ -23,6 +23,10 @@ bool cone_impulses_continue(const struct Resolution *resolution, const struct Co
 bool cone_forces_find(const struct Resolution *resolution, const struct ContactImpulses *impulses, const double *rate,
                       double *force, double *error);
 
+/* Finds those that are near the given ones. */
+bool cone_forces_continue(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                          const double *rate, double *force, double *error);
+
 /*
  * True if other impulses also fulfil the law, with another motion and no gain of energy. It searches from several
  * starts, and so may miss some.

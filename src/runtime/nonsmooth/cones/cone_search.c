@@ -10,7 +10,7 @@
  * 2. Projected gradient sweeps, O(n^2) each: all impulses take a step against their rates, and are projected. Newton's
  *    method follows after 10 sweeps, after 20 more, and so on, up to LAW_TRIALS times.
  * 3. An interior-point method (cone_interior.c).
- * 4. Gauss-Seidel sweeps, in which the impulses change one after another, as in 2.
+ * 4. Gauss-Seidel sweeps, in which the impulses change one after another, as in 2, but many more of them.
  *
  * Without friction the problem is convex, and the active set method (active_set.c) takes the place of 2 to 4.
  *
@@ -32,10 +32,13 @@
 #include "nonsmooth/cones/cone_newton.h"
 #include "support/arena.h"
 
-/* Trials; where the interior path fails for forces, there are more. */
-enum { LAW_TRIALS = 4, LAW_TRIALS_ALONE = 12 };
+/* Trials; where the interior path fails for forces, there are more, and most in turn. */
+enum { LAW_TRIALS = 4, LAW_TRIALS_ALONE = 12, LAW_TRIALS_IN_TURN = 11 };
 
-/* How many more sweeps each trial makes than the one before; the first one makes none. */
+/*
+ * How many more sweeps each trial makes than the one before; the first one makes none. In turn the number doubles with
+ * each trial, up to 10,000 sweeps in all. They converge slowly where many contacts share a load.
+ */
 enum { LAW_SWEEPS = 10 };
 
 /* A relative residual at which a search ends. */
@@ -112,7 +115,7 @@ double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials) {
   double least = INFINITY;
   for (int trial = 0; trial < trials && !(least <= law_holds); trial++) {
     memcpy(cones->impulse, cones->swept, bytes);
-    if (trial > 0) sweep_impulses(cones, kind, LAW_SWEEPS * trial);
+    if (trial > 0) sweep_impulses(cones, kind, kind == IN_TURN ? LAW_SWEEPS << (trial - 1) : LAW_SWEEPS * trial);
     memcpy(cones->swept, cones->impulse, bytes);
     double miss = cones_relative_miss(cones, cone_newton(cones, cones->work));
     if (miss < least) memcpy(cones->best, cones->impulse, bytes);
@@ -157,14 +160,15 @@ bool cones_find_impulses(struct Cones *cones) {
   if (is_convex) return is_pressed(cones);
   double other = cones->path->find(cones, law_holds, false, cones->work);
   if (!(other < miss)) memcpy(cones->impulse, cones->best, cones->impulses->count * sizeof *cones->best);
-  return is_accepted(cones, fmin(other, miss)) || is_accepted(cones, search_by_sweeps(cones, IN_TURN, LAW_TRIALS));
+  return is_accepted(cones, fmin(other, miss)) ||
+         is_accepted(cones, search_by_sweeps(cones, IN_TURN, LAW_TRIALS_IN_TURN));
 }
 
 double cones_find_forces(struct Cones *cones) {
   if (!cones_fill_scales(cones)) return INFINITY;
   double miss = cones->path->find(cones, law_holds, true, cones->work);
   if (miss > law_roughly_holds) miss = search_by_sweeps(cones, AT_ONCE, LAW_TRIALS_ALONE);
-  return miss <= law_roughly_holds ? miss : search_by_sweeps(cones, IN_TURN, LAW_TRIALS);
+  return miss <= law_roughly_holds ? miss : search_by_sweeps(cones, IN_TURN, LAW_TRIALS_IN_TURN);
 }
 
 size_t pressing_forces_work_count(const struct ConePath *path, size_t n) {

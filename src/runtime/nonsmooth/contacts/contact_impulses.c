@@ -35,27 +35,17 @@ size_t choose_touching(struct Resolution *resolution, enum Part frictions) {
   return count;
 }
 
-bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
-  size_t rate = contact_slot(resolution->switches, contact, CONTACT_RATE);
-  if (contact_is_closed(resolution, contact)) return true;
-  return is_touching(resolution, contact) && resolution->value[rate] <= resolution->error_bound[rate];
-}
-
-/* True if the contact has no friction, and has no restitution or touches beside others. */
+/* True if the contact has no restitution, or touches beside others. */
 static bool is_in_heap(const struct Resolution *resolution, size_t contact) {
-  const struct SwitchTable *switches = resolution->switches;
   bool is_beside = !(contact_value(resolution, contact, CONTACT_RESTITUTION) > 0.0);
-  for (size_t i = 0; i < switches->friction_count; i++)
-    if (rests_on(switches, i, contact)) return false;
-  for (size_t i = 0; i < switches->contact_count && !is_beside; i++)
+  for (size_t i = 0; i < resolution->switches->contact_count && !is_beside; i++)
     is_beside = i != contact && (contact_is_closed(resolution, i) || is_touching(resolution, i));
   return is_beside;
 }
 
 /*
  * Returns the height of bounces that count as lost, the error of the method; 0 if rounding is the only error. In a heap
- * without friction each landing causes others, ever slower ones. These are lost below the tolerance, whatever the method
- * is. With friction, a contact that closes before its time may jam another one that slides.
+ * each landing causes others, ever slower ones. These are lost below the tolerance, whatever the method is.
  */
 static double lost_height(const struct Resolution *resolution, size_t contact) {
   if (resolution->occasion == IN_EXCHANGE) return 0.0;
@@ -80,6 +70,12 @@ bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double 
   double lost =
       fmax(4.0 * resolution_error_bound(resolution, gap, gap + CONTACT_RATE), -depth * resolution->value[gap]);
   return rate * rate <= 2.0 * fall * fmax(lost, lost_height(resolution, contact));
+}
+
+bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
+  if (contact_is_closed(resolution, contact)) return true;
+  return is_touching(resolution, contact) &&
+         bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
 }
 
 double largest_contact_force(const struct Resolution *resolution) {
@@ -175,12 +171,13 @@ static size_t constraint_of(const struct ContactImpulses *impulses, const struct
  * Computes the change of the velocities by the unit impulse of a constraint in response, then the generalized impulse,
  * each of n numbers. impulse is 0. False if M is singular.
  */
-static bool respond_to_unit(struct Resolution *resolution, size_t constraint, double *impulse, double *response) {
+static bool respond_to_unit(struct Resolution *resolution, size_t constraint, bool repeats, double *impulse,
+                            double *response) {
   struct Instance *instance = resolution->instance;
   struct Point point = solver_point(instance, resolution->time, resolution->state);
   double *unit = &impulse[lagrangian.coordinate_count + constraint];
   *unit = 1.0;
-  instance->singular = lagrangian.constraints.respond(&point, impulse, response);
+  instance->singular = lagrangian.constraints.respond(&point, repeats, impulse, response);
   *unit = 0.0;
   return instance->singular == 0 && are_finite(response, 2 * lagrangian.coordinate_count);
 }
@@ -193,7 +190,7 @@ static bool respond_to_impulses(struct Resolution *resolution, struct ContactImp
   size_t n = lagrangian.coordinate_count;
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
   for (size_t row = 0; row < impulses->count; row++) {
-    if (!respond_to_unit(resolution, constraint_of(impulses, resolution->switches, row), impulses->impulse,
+    if (!respond_to_unit(resolution, constraint_of(impulses, resolution->switches, row), row > 0, impulses->impulse,
                          impulses->response))
       return false;
     memcpy(impulses->velocities + row * n, impulses->response, n * sizeof *impulses->response);
@@ -291,7 +288,7 @@ bool contact_impulses_find_own(struct Resolution *resolution, const struct Conta
   double *impulse = impulses->impulse, *response = impulses->response;
   bool done = evaluate_prepare(resolution->instance) == STATUS_DONE;
   for (size_t i = 0; i < impulses->contact_count && done; i++) {
-    done = respond_to_unit(resolution, constraint_of(impulses, switches, i), impulse, response);
+    done = respond_to_unit(resolution, constraint_of(impulses, switches, i), i > 0, impulse, response);
     own[i] = 0.0;
     for (size_t k = 0; k < n; k++) own[i] += response[n + k] * response[k];
   }

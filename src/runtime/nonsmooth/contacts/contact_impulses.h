@@ -72,7 +72,7 @@ bool is_touching(const struct Resolution *resolution, size_t contact);
 /* Lets the contacts that touch take part; frictions: the part of all frictions. Returns the number of contacts. */
 size_t choose_touching(struct Resolution *resolution, enum Part frictions);
 
-/* True if the contact is closed, or touches and does not open faster than rounding. */
+/* True if the contact is closed, or touches and does not open, or its bounce is lost. */
 bool contact_is_at_rest(const struct Resolution *resolution, size_t contact);
 
 /*

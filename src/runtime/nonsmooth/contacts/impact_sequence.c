@@ -3,7 +3,7 @@
  * within rounding; the other touching contacts are open. Contacts that close because of it have impacts of their own
  * after it. So a row of touching bodies passes an impulse on (Newton's cradle).
  *
- * All that touch are taken at once, without restitution, if none would bounce visibly, and after IMPACT_LIMIT impacts.
+ * All that touch are taken at once, without restitution, if none would bounce visibly, and after too many impacts.
  * Contacts that come to rest then may close others, which are taken in the same way. Each time, kinetic energy is lost.
  * If a contact closes after PLASTIC_LIMIT of these, bodies are crushed, and the motion ends.
  *
@@ -23,8 +23,11 @@
 
 const char impact_without_solution[] = "an impact of a contact has no solution";
 
-/* IMPACT_LIMIT: impacts of an event one after another. PLASTIC_LIMIT: further ones, of all contacts that touch. */
-enum { IMPACT_LIMIT = 100000, PLASTIC_LIMIT = 100 };
+/*
+ * IMPACT_LIMIT: impacts of an event one after another. With friction on contacts each is a problem of its own, and there
+ * may be fewer. PLASTIC_LIMIT: further ones, of all contacts that touch.
+ */
+enum { IMPACT_LIMIT = 100000, FRICTION_IMPACT_LIMIT = 1000, PLASTIC_LIMIT = 100 };
 
 /* Closing speeds with a smaller relative difference are equal, so that impacts of symmetric systems stay symmetric. */
 static const double equal_share = 1e-9;
@@ -75,6 +78,10 @@ static double fastest_of_event(const struct Resolution *resolution) {
   return fastest;
 }
 
+static int impact_limit(const struct Resolution *resolution) {
+  return resolution->switches->rests_on == NULL ? IMPACT_LIMIT : FRICTION_IMPACT_LIMIT;
+}
+
 /*
  * True if the impact of a contact is taken by itself, and others follow from it. False for one of all that touch. Then
  * none of them would bounce visibly, or this one has 1e-12 of the largest energy, or there were too many impacts.
@@ -86,7 +93,7 @@ static bool passes_on(const struct Resolution *resolution, size_t contact) {
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
     any_bounces |= is_touching(resolution, i) &&
                    !bounce_is_lost(resolution, i, contact_value(resolution, i, CONTACT_RESTITUTION) * speed);
-  return any_bounces && resolution->impacts < IMPACT_LIMIT;
+  return any_bounces && resolution->impacts < impact_limit(resolution);
 }
 
 /* True if a contact still closes after an impact of all that touch, not only by uncertain directions of the gaps. */
@@ -152,11 +159,11 @@ void impact_leave_open(struct Resolution *resolution) {
 /* Takes an impact of a contact and of those that are hit with it; leaves all contacts open. False if it fails. */
 static bool take_impact(struct Resolution *resolution, size_t contact) {
   bool passes = passes_on(resolution, contact);
-  if (resolution->impacts == IMPACT_LIMIT)
+  if (resolution->impacts == impact_limit(resolution))
     log_message(resolution->instance, STATUS_WARNING,
                 "time %g: after %d impacts at one time, the last one of '%s', contacts that touch lose all energy of "
                 "their impacts",
-                resolution->time, IMPACT_LIMIT, resolution->switches->contacts[contact].name);
+                resolution->time, impact_limit(resolution), resolution->switches->contacts[contact].name);
   if (!choose_hit(resolution, contact, passes)) return false;
   resolution_keep_modes(resolution);
   let_all_slide(resolution);

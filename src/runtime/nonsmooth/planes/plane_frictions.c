@@ -7,8 +7,8 @@
  *
  * Each round makes one change, or one to each of several frictions. A friction may switch more than TOGETHER_LIMIT
  * times, or no forces may be found while the contacts stay closed. Then the forces of contacts and frictions are solved
- * for together , at most once in an event resolution. Beyond FRICTION_FLIP_LIMIT switches the motion
- * ends with a message.
+ * for together, at most once in an event resolution. After that a short step is tried (end_slip.h). Beyond
+ * FRICTION_FLIP_LIMIT switches the motion ends with a message.
  */
 #include <math.h>
 #include <string.h>
@@ -25,8 +25,8 @@
  */
 static const double in_rounding_error = 200.0;
 
-/* Switches of one friction after which all forces at rest are solved for at once. */
-enum { TOGETHER_LIMIT = 20 };
+/* Switches of one friction after which all forces at rest are solved for at once; and after which a step is tried. */
+enum { TOGETHER_LIMIT = 20, SHORT_STEP_LIMIT = 40 };
 
 static const char *reject_directions(const struct Resolution *resolution) {
   frictions_report_missing(resolution, "directions");
@@ -150,12 +150,20 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
   return is_found || resolution_ends_slip(resolution) ? NULL : reject_directions(resolution);
 }
 
+/* Finds the modes of frictions that keep switching. False if none does, or none are found. */
+static bool end_round_trips(struct Resolution *resolution) {
+  size_t flipping = find_flipping(resolution, TOGETHER_LIMIT);
+  if (flipping == resolution->switches->friction_count) return false;
+  double flips = resolution->flips[friction_indicator(resolution->switches, flipping)];
+  return plane_rests_find_with_contacts(resolution) ||
+         (fmod(flips, SHORT_STEP_LIMIT) == 0.0 && resolution_ends_slip(resolution));
+}
+
 static const char *act(struct Resolution *resolution, bool *again) {
   const char *problem = NULL;
   *again = change_forces(resolution);
   if (!*again) problem = frictions_act_beside(resolution, any_rests(resolution), again);
-  bool goes_round = find_flipping(resolution, TOGETHER_LIMIT) < resolution->switches->friction_count;
-  if (problem == NULL && !*again && goes_round && plane_rests_find_with_contacts(resolution)) *again = true;
+  if (problem == NULL && !*again && end_round_trips(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
   size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
   if (problem != NULL || flipping == resolution->switches->friction_count) return problem;
@@ -170,6 +178,11 @@ static void set_plane(struct Resolution *resolution, size_t plane, bool slides) 
   if (!slides) plane_stick(resolution, &state);
   else if (plane_moves(&state)) plane_slide(resolution, &state);
   else plane_slip(resolution, &state, slip_direction);
+}
+
+static bool is_slow(const struct Resolution *resolution, size_t plane) {
+  struct PlaneState state = plane_state(resolution, plane);
+  return plane_is_slow(resolution, &state);
 }
 
 /* Sets the modes before the first resolution: free, or sliding at a velocity. The first axis is the slip direction. */
@@ -204,5 +217,7 @@ const struct FrictionLaws plane_friction_laws = {.slide_unheld = frictions_slide
                                                  .explain_jam = frictions_explain_jam,
                                                  .guess = guess,
                                                  .resolve_together = plane_rests_find_with_contacts,
+                                                 .continue_together = plane_rests_continue,
                                                  .slip_where_stopped = let_stopped_slip,
+                                                 .is_slow = is_slow,
                                                  .set_plane = set_plane};

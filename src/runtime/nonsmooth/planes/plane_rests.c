@@ -2,7 +2,7 @@
  * Frictions in planes at rest. Those that are slow, and those that stick, are tried to stick. If one would need more
  * than its stiction, the forces of all are found together (rest_forces.c), and set the modes. The contacts stay closed
  * at first. If no forces are found, those of all contacts at rest are unknown, too: a contact presses or opens. This
- * second search is made at most once in an event resolution.
+ * second search is made at most once in an event resolution. A third one starts from the forces of a short step.
  *
  * If the supports are statically indeterminate, the constraints of sticking frictions have the forces of least norm.
  * If these exceed a limit, frictions stick with the forces that were found, which have a margin to their limits.
@@ -18,6 +18,9 @@
 #include "nonsmooth/planes/plane_stops.h"
 #include "nonsmooth/planes/rest_forces.h"
 #include "nonsmooth/tolerances.h"
+
+/* Continuations of forces of short steps in an event resolution. */
+enum { CONTINUE_LIMIT = 20 };
 
 /* In units of its stiction: a friction that needs more cannot stop the motion. */
 static const double hopeless = 1e6;
@@ -81,7 +84,8 @@ static void choose_at_rest(struct Resolution *resolution, bool with_contacts) {
          begins = plane_has_direction(&state) && !plane_moves(&state),
          sticks = state.mode == PLANE_STICKS && (with_contacts || state.speed <= state.small),
          has_force = state.mode != PLANE_IS_FREE && state.has_force;
-    bool rests = has_force ? stops || begins || sticks : !plane_moves(&state) && rests_on_chosen(resolution, &state);
+    bool rests =
+        has_force ? stops || begins || sticks : (stops || !plane_moves(&state)) && rests_on_chosen(resolution, &state);
     bool is_overcome = (begins && !stops && state.mode == PLANE_IMPENDS) || plane_is_overcome(resolution, &state);
     *part_of_plane(resolution, &state) = state.is_given || !rests ? LEFT_OUT
                                          : stops                  ? IS_SLOW
@@ -148,6 +152,7 @@ static bool has_rate(const struct Resolution *resolution, const struct PlaneStat
 bool plane_is_unheld(const struct Resolution *resolution, const struct PlaneState *state) {
   size_t slot = friction_slot(resolution->switches, state->metadata->along, FRICTION_RATE);
   double bound = fmax(resolution->error_bound[slot], resolution->error_bound[slot + FRICTION_VALUES]);
+  bound = fmax(bound, resolution->least_acceleration);
   return state->mode == PLANE_STICKS && has_rate(resolution, state, bound) &&
          has_rate(resolution, state, tolerances_of(resolution).acceleration);
 }
@@ -294,8 +299,8 @@ static void choose_without_slow(struct Resolution *resolution, bool with_contact
 }
 
 /* Finds the modes where not all can stick. False if that fails. */
-static bool find_slips(struct Resolution *resolution, bool with_contacts) {
-  struct RestForces forces = {.resolution = resolution};
+static bool find_slips(struct Resolution *resolution, bool with_contacts, bool continues) {
+  struct RestForces forces = {.resolution = resolution, .continues = continues};
   release_others(resolution);
   for (bool is_found = false, any_slides = false; !is_found;) {
     if (!rest_forces_find(&forces)) {
@@ -313,7 +318,15 @@ static bool find_slips(struct Resolution *resolution, bool with_contacts) {
   return is_done;
 }
 
-bool plane_rests_find(struct Resolution *resolution) {
+/* Returns whether the modes were found; else restores those that were kept. */
+static bool found_or_restored(struct Resolution *resolution, bool is_found) {
+  if (is_found) return true;
+  resolution_restore_modes(resolution);
+  resolution_evaluate(resolution); /* the caller sees missing accelerations in the next evaluation */
+  return false;
+}
+
+static bool find_rests(struct Resolution *resolution) {
   bool stops;
   choose_at_rest(resolution, false);
   if (!plane_stops_motion(resolution, &stops)) return false;
@@ -321,7 +334,12 @@ bool plane_rests_find(struct Resolution *resolution) {
   if (!try_to_stick(resolution)) return false;
   if (all_stick(resolution)) return bring_to_rest(resolution, stops);
   release_passing(resolution);
-  return find_slips(resolution, false) && bring_to_rest(resolution, stops);
+  return find_slips(resolution, false, false) && bring_to_rest(resolution, stops);
+}
+
+bool plane_rests_find(struct Resolution *resolution) {
+  resolution_keep_modes(resolution);
+  return found_or_restored(resolution, find_rests(resolution));
 }
 
 /* Lets frictions slide again on open contacts that take part: they have a force where these press. */
@@ -337,7 +355,27 @@ bool plane_rests_find_with_contacts(struct Resolution *resolution) {
   bool stops;
   if (resolution->has_found_forces) return false;
   resolution->has_found_forces = true;
+  resolution_keep_modes(resolution);
   choose_at_rest(resolution, true);
   slide_on_chosen(resolution);
-  return plane_stops_motion(resolution, &stops) && find_slips(resolution, true) && bring_to_rest(resolution, stops);
+  bool is_found = plane_stops_motion(resolution, &stops) && find_slips(resolution, true, false);
+  return found_or_restored(resolution, is_found && bring_to_rest(resolution, stops));
+}
+
+/* Lets slow frictions slide on, where they have a velocity. */
+static void let_moving_pass(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
+    struct PlaneState state = plane_state(resolution, i);
+    enum Part *part = part_of_plane(resolution, &state);
+    if (*part == IS_SLOW && plane_moves(&state)) let_pass(resolution, &state, state.velocity);
+  }
+}
+
+bool plane_rests_continue(struct Resolution *resolution, bool stops) {
+  if (++resolution->continued_forces > CONTINUE_LIMIT) return false;
+  resolution_keep_modes(resolution);
+  choose_at_rest(resolution, true);
+  if (!stops) let_moving_pass(resolution);
+  slide_on_chosen(resolution);
+  return found_or_restored(resolution, find_slips(resolution, true, true) && bring_to_rest(resolution, stops));
 }

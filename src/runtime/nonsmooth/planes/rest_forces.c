@@ -281,13 +281,25 @@ static bool lower_limits(struct RestForces *forces) {
   return falls;
 }
 
+/* Fills the forces of a short step. */
+static void take_guess(struct RestForces *forces) {
+  size_t contacts = forces->resolution->switches->contact_count;
+  for (size_t row = 0; row < forces->n; row++) {
+    size_t member = forces->impulses.member[row];
+    forces->force[row] = forces->resolution->guess[row_is_of_contact(forces, row) ? member : contacts + member];
+  }
+}
+
 /* Finds the forces. False if there are none. */
 static bool solve_law(struct RestForces *forces) {
   double error;
   if (!fill_functions(forces)) return false;
+  if (forces->continues) take_guess(forces);
   do {
     fill_limits(forces);
-    if (!cone_forces_find(forces->resolution, &forces->impulses, forces->free, forces->force, &error)) return false;
+    bool is_found = (forces->continues ? cone_forces_continue : cone_forces_find)(forces->resolution, &forces->impulses,
+                                                                                  forces->free, forces->force, &error);
+    if (!is_found) return false;
     double largest = fill_rates_behind(&forces->impulses, forces->free, forces->force, forces->behind);
     forces->none = fmax(rounded_share * largest, error);
     forces->resolution->least_acceleration = forces->none;

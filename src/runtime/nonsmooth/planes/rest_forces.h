@@ -23,6 +23,7 @@ struct RestForces {
   double *load, *missing;            /* of carried_forces.c: n, and 3 n */
   double *slips;                     /* 1 if the friction slips: its limit is the kinetic friction */
   double none;                       /* accelerations that count as 0 */
+  bool continues;                    /* the forces are near those in guess[] of the event resolution */
 };
 
 static inline enum Part *part_of_plane(const struct Resolution *resolution, const struct PlaneState *state) {

@@ -2,7 +2,8 @@
  * Impacts without collision. Contacts at rest that slide may have no forces (Painleve's paradox). Let a be the
  * accelerations without contact forces. For the rates u + tau a, after a short time tau, the law of cone_search.c does
  * have impulses. As tau vanishes they tend to finite ones, which end the slip. (D. E. Stewart: Rigid-body dynamics with
- * friction and impact, SIAM Review 42, 2000, section 3.) If they tend to 0 there are forces, and nothing is done.
+ * friction and impact, SIAM Review 42, 2000, section 3.) If they tend to 0 there are forces p / tau, from which
+ * plane_rests.c finds the modes. A second step counts small rates as 0: of slow frictions, and of lost bounces.
  */
 #include "nonsmooth/sliding/end_slip.h"
 
@@ -24,8 +25,8 @@
 static const double short_shares[] = {1e-7, 1e-5, 1e-3};
 enum { SHARES = sizeof short_shares / sizeof *short_shares };
 
-/* Changes of the rates by less than this multiple of tau a are those of finite forces. */
-static const double finite_forces = 20.0;
+/* Finite forces of wedged bodies change rates by up to this multiple of tau a. */
+static const double wedged_forces = 200.0;
 
 /* Slips that are ended in an event; more of them have no end. */
 enum { SLIP_LIMIT = 100 };
@@ -35,8 +36,10 @@ struct ShortStep {
   struct Resolution *resolution;
   struct ContactImpulses impulses;
   double *impulse, *work; /* of each row; workspace */
-  double ahead;           /* largest change of a rate by tau a */
+  double tau, ahead;      /* in s; largest change of a rate by tau a */
   double slip;            /* the largest before the step */
+  bool stops;             /* small rates count as 0 */
+  bool has_forces;        /* there are finite forces, kept in guess[] of the event resolution */
 };
 
 /* Opens the contacts that touch, and lets all frictions slide. */
@@ -45,6 +48,14 @@ static void release_chosen(struct Resolution *resolution) {
   for (size_t i = 0; i < switches->friction_count; i++) set_friction(resolution, i, 1.0);
   for (size_t i = 0; i < switches->contact_count; i++)
     if (resolution->part[i] != LEFT_OUT) set_contact(resolution, i, false);
+}
+
+/* True if the rate of a row is small, and counts as 0. */
+static bool has_stopped(const struct ShortStep *step, size_t row) {
+  const struct Resolution *resolution = step->resolution;
+  size_t member = step->impulses.member[row];
+  bool is_contact = row < step->impulses.contact_count;
+  return step->stops && (is_contact ? resolution->part[member] : *part_of_friction(resolution, member)) == IS_SLOW;
 }
 
 /* Fills the rates after the time tau, given its share. */
@@ -62,10 +73,11 @@ static void fill_rates_ahead(struct ShortStep *step, double share) {
     acceleration[row] = resolution->value[slot + (is_contact ? (size_t)CONTACT_ACCELERATION : (size_t)FRICTION_RATE)];
     largest = fmax(largest, fabs(acceleration[row]));
     if (!is_contact) step->slip = fmax(step->slip, fabs(impulses->rate[row]));
+    if (has_stopped(step, row)) impulses->rate[row] = 0.0;
   }
-  double tau = largest > 0.0 ? share * step->slip / largest : 0.0;
-  for (size_t row = 0; row < impulses->count; row++) impulses->rate[row] += tau * acceleration[row];
-  step->ahead = tau * largest;
+  step->tau = largest > 0.0 ? share * step->slip / largest : 0.0;
+  for (size_t row = 0; row < impulses->count; row++) impulses->rate[row] += step->tau * acceleration[row];
+  step->ahead = step->tau * largest;
 }
 
 /* True if impulses of a contact change the rate of another one. */
@@ -81,11 +93,15 @@ static double own_change(const struct ShortStep *step, size_t row) {
   return step->impulses.delassus[row * (step->impulses.count + 1)] * step->impulse[row];
 }
 
-/* True if some impulse is larger than that of finite forces, and acts on further contacts. */
+/*
+ * True if some impulse is larger than that of finite forces, and acts on further contacts. The former changes rates like
+ * the slip that it ends, the latter like tau a. The limit is the geometric mean of both, but smaller for small slips.
+ */
 static bool is_impulsive(const struct ShortStep *step) {
+  double limit = fmin(sqrt(step->ahead * step->slip), wedged_forces * step->ahead);
   bool any = false;
   for (size_t row = 0; row < step->impulses.contact_count; row++)
-    any |= own_change(step, row) > finite_forces * step->ahead && acts_on_others(&step->impulses, row);
+    any |= own_change(step, row) > limit && acts_on_others(&step->impulses, row);
   return any;
 }
 
@@ -128,6 +144,19 @@ static bool find_impulses_of_step(struct ShortStep *step) {
   return is_found;
 }
 
+/* Keeps the forces that have the impulses of a step. */
+static void keep_forces(struct ShortStep *step) {
+  struct Resolution *resolution = step->resolution;
+  const struct ContactImpulses *impulses = &step->impulses;
+  size_t contacts = resolution->switches->contact_count;
+  memset(resolution->guess, 0, (contacts + resolution->switches->friction_count) * sizeof *resolution->guess);
+  for (size_t row = 0; row < impulses->count; row++) {
+    size_t member = impulses->member[row];
+    resolution->guess[row < impulses->contact_count ? member : contacts + member] = step->impulse[row] / step->tau;
+  }
+  step->has_forces = true;
+}
+
 /* Changes the velocities by a step from the modes of release_chosen(). False if no slip ends, or the energy would grow. */
 static bool take_step(struct ShortStep *step) {
   struct Resolution *resolution = step->resolution;
@@ -138,30 +167,58 @@ static bool take_step(struct ShortStep *step) {
     return false;
   }
   step->work = step->impulse + count;
-  bool is_done = find_impulses_of_step(step) && is_impulsive(step) && !gains_energy(&step->impulses, step->impulse);
+  bool is_found = find_impulses_of_step(step), is_impact = is_found && is_impulsive(step);
+  if (is_found && !is_impact) keep_forces(step);
+  bool is_done = is_impact && !gains_energy(&step->impulses, step->impulse);
   if (is_done) report_ended_slip(step);
   for (size_t row = 0; row < count && is_done; row++) impact_add(resolution, &step->impulses, row, step->impulse[row]);
   scratch_return(resolution->instance, SCRATCH_IMPACT);
   return is_done;
 }
 
+static void set_flips(struct Resolution *resolution, double flips) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->friction_count; i++) resolution->flips[friction_indicator(switches, i)] = flips;
+}
+
 /* Lets all contacts and frictions find their modes anew behind a step. */
 static bool begin_anew(struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  for (size_t i = 0; i < switches->contact_count; i++)
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
     if (resolution->part[i] != LEFT_OUT) resolution->forced[i] = UNFORCED;
-  for (size_t i = 0; i < switches->friction_count; i++) resolution->flips[friction_indicator(switches, i)] = 0.0;
+  set_flips(resolution, 0.0);
   resolution->has_found_forces = false;
   resolution->ended_slips++;
   impact_leave_open(resolution);
   return let_stopped_slip(resolution);
 }
 
-bool end_slip(struct Resolution *resolution) {
-  struct ShortStep step = {.resolution = resolution};
+/* Selects the contacts that touch, and all frictions. Those whose rates are small are slow: a lost bounce, for one. */
+static size_t choose_touching_and_slow(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t count = choose_touching(resolution, TAKES_PART);
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (resolution->part[i] != LEFT_OUT && contact_is_at_rest(resolution, i)) resolution->part[i] = IS_SLOW;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (is_in_plane(switches, i) && switches->friction_laws->is_slow(resolution, plane_of(switches, i)))
+      *part_of_friction(resolution, i) = IS_SLOW;
+  return count;
+}
+
+/* Finds the modes from the forces of a step. False if there are none. */
+static bool continue_forces(struct Resolution *resolution, bool stops) {
+  const struct FrictionLaws *laws = resolution->switches->friction_laws;
+  if (laws->continue_together == NULL || !resolution_evaluate(resolution)) return false;
+  if (!laws->continue_together(resolution, stops)) return false;
+  set_flips(resolution, 1.0);
+  return true;
+}
+
+/* Ends a slip by a step, or finds the modes from its forces. stops: small rates count as 0. False if that fails. */
+static bool end_slip_by_step(struct Resolution *resolution, bool stops) {
+  struct ShortStep step = {.resolution = resolution, .stops = stops};
   bool changed = resolution->changed, is_done = false;
-  if (resolution->occasion == AT_START || resolution->ended_slips == SLIP_LIMIT) return false;
-  if (choose_touching(resolution, TAKES_PART) < 2) return false;
+  if (!resolution_evaluate(resolution) && stops) return false; /* accelerations decide on what is slow */
+  if (choose_touching_and_slow(resolution) < 2) return false;
   resolution_keep_modes(resolution);
   release_chosen(resolution);
   if (resolution_evaluate(resolution) && contact_impulses_create(resolution, &step.impulses)) {
@@ -170,5 +227,11 @@ bool end_slip(struct Resolution *resolution) {
   }
   resolution_restore_modes(resolution);
   resolution->changed = changed || is_done;
-  return is_done && begin_anew(resolution);
+  if (is_done) return begin_anew(resolution);
+  return step.has_forces && continue_forces(resolution, stops);
+}
+
+bool end_slip(struct Resolution *resolution) {
+  if (resolution->occasion == AT_START || resolution->ended_slips == SLIP_LIMIT) return false;
+  return end_slip_by_step(resolution, false) || end_slip_by_step(resolution, true);
 }
