@@ -105,7 +105,27 @@ def rocking_column():
     )
 
 
+DISKS = 9
+
+
+def disks():
+    """Disks with friction that move in a vertical plane, between two walls."""
+    walls = "".join(
+        f'<frame name="at{name}"><translate x="{x}"/><rotate axis="y" angle="{angle}"/></frame><shape name="{name}" in="at{name}" type="plane"/>'
+        for name, x, angle in [("left", -0.35, "pi/2"), ("right", 0.35, "-pi/2")]
+    )
+    bodies = ""
+    for k in range(DISKS):
+        start = f'<coordinate name="b{k}x" velocity="b{k}vx" unit="m" start="{-0.22 + 0.22 * (k % 3) + 0.005 * (k // 3)}"/>'
+        others = ["floor", "left", "right", *(f"b{j}Shape" for j in range(k))]
+        body = in_plane(f"b{k}", 0.15 + 0.22 * (k // 3), 'type="sphere" radius="0.1"')
+        bodies += body.replace(f'<coordinate name="b{k}x" velocity="b{k}vx" unit="m"/>', start)
+        bodies += "".join(CONTACT.format(f"c{k}_{other}", f"b{k}Shape", other) for other in others)
+    return f'<shape name="floor" type="plane"/>{walls}{bodies}'
+
+
 TEXTS = {
+    "Disks": disks(),
     "ThrownInPlane": in_plane("a", 0.4, 'type="box" sizeX="0.3" sizeZ="0.2"') + '<shape name="floor" type="plane"/>' + CONTACT.format("c", "aShape", "floor"),
     "RockingColumn": rocking_column(),
     "PushedColumn": column(),
@@ -395,4 +415,23 @@ def test_a_heap_lands():
     distances = [np.linalg.norm(places[i] - places[k]) for i in range(HEAP) for k in range(i)]
     assert min(distances) >= 0.2 - 1e-9 and places[:, 1].min() >= 0.1 - 1e-9
     assert min(distances) <= 0.2 + 1e-9
+    instance.free()
+
+
+@pytest.mark.parametrize("draw, e", [(0, 0.5), (2, 0), (5, 0)])
+def test_disks_with_friction(draw, e):
+    """
+    The disks come to lie on each other in few events: bounces below the tolerance are lost, and forces are found. The energy does not grow, and no
+    disk is in another one or in a wall.
+    """
+    draws = np.random.default_rng(draw)
+    values = {"mu": draws.uniform(0.2, 1), "e": draws.choice([0, 0.5])}
+    assert values["e"] == e
+    for k in range(DISKS):
+        values |= {f"b{k}w": draws.uniform(-5, 5), f"b{k}vx": draws.uniform(-0.5, 0.5)}
+    instance, energies = run("Disks", values, 2.0, 1e-4)
+    places = np.array([instance.get(f"b{k}x", f"b{k}z") for k in range(DISKS)])
+    distances = [np.linalg.norm(places[i] - places[k]) for i in range(DISKS) for k in range(i)]
+    assert min(distances) > 0.2 - 1e-7 and places[:, 1].min() > 0.1 - 1e-7 and np.abs(places[:, 0]).max() < 0.25 + 1e-7
+    assert instance.fmu.getInteger(instance.vr("events"))[0] < 300
     instance.free()
