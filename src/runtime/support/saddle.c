@@ -39,8 +39,9 @@ static size_t slot_of_weakest(size_t n, const size_t *start, const size_t *colum
 }
 
 /*
- * L below its diagonal without the elements that are 0, as most contacts of a heap are open. The numbers of a list follow
- * the elements: of rows in use, these rows, where each row of L begins, and the columns of its elements.
+ * L below its diagonal without the elements that are 0, if some constraints are: most contacts of a heap are open. The
+ * numbers of a list follow the elements: of rows in use, these rows, where each row of L begins, and the columns of its
+ * elements. Without such constraints no row is in use, and L is not packed.
  */
 struct Packed {
   size_t n;
@@ -66,6 +67,10 @@ static void list(const struct Packed *packed, size_t i, size_t listed_number) {
 
 static size_t used_count(const struct Packed *packed) {
   return listed(packed, 0);
+}
+
+static bool is_packed(const struct Packed *packed) {
+  return used_count(packed) > 0;
 }
 
 /* Returns a row in use: of a coordinate, or of a constraint whose row of K is not 0. */
@@ -111,8 +116,11 @@ static void pack_empty_row(const struct Packed *packed, size_t i) {
 /* Subtracts K x from rest, with the rows of K below n. */
 static void subtract_product(size_t n, const struct Packed *packed, const struct Given *given, const Real *x,
                              Real *rest) {
-  for (size_t used = 0; used < used_count(packed) && used_row(packed, used) < n; used++) {
-    size_t i = used_row(packed, used);
+  bool has_list = is_packed(packed);
+  size_t count = has_list ? used_count(packed) : n;
+  for (size_t used = 0; used < count; used++) {
+    size_t i = has_list ? used_row(packed, used) : used;
+    if (i >= n) return;
     for (size_t k = given->start[i]; k < given->start[i + 1]; k++) {
       size_t j = given->column[k];
       rest[i] -= given->matrix[k] * x[j];
@@ -121,8 +129,24 @@ static void subtract_product(size_t n, const struct Packed *packed, const struct
   }
 }
 
+/* Subtracts a multiple of row i of L below its diagonal from x. */
+static void subtract_row(const struct Packed *packed, const size_t *start, const size_t *column, const Real *m,
+                         size_t i, Real share, Real *x) {
+  if (!is_packed(packed)) {
+    for (size_t k = start[i]; k + 1 < start[i + 1]; k++) x[column[k]] -= m[k] * share;
+    return;
+  }
+  size_t end = packed_start(packed, i + 1);
+  for (size_t k = packed_start(packed, i); k < end; k++) x[packed_column(packed, k)] -= packed->element[k] * share;
+}
+
 /* Solves L D L^T x = b in the rows below n, in place. */
-static void solve_packed(size_t n, const struct Packed *packed, const size_t *start, const Real *m, Real *x) {
+static void solve_below(size_t n, const struct Packed *packed, const size_t *start, const size_t *column, const Real *m,
+                        Real *x) {
+  if (!is_packed(packed)) {
+    ldlt_solve(n, start, column, m, x);
+    return;
+  }
   size_t count = used_count(packed);
   for (size_t used = 0; used < count && used_row(packed, used) < n; used++) {
     size_t i = used_row(packed, used);
@@ -134,21 +158,18 @@ static void solve_packed(size_t n, const struct Packed *packed, const size_t *st
   for (size_t used = count; used-- > 0;) {
     size_t i = used_row(packed, used);
     if (i >= n || ldlt_is_idle(m[start[i + 1] - 1])) continue;
-    size_t end = packed_start(packed, i + 1);
-    for (size_t k = packed_start(packed, i); k < end; k++) x[packed_column(packed, k)] -= packed->element[k] * x[i];
+    subtract_row(packed, start, column, m, i, x[i], x);
   }
 }
 
 /* Computes x = L^-T e_i in the rows up to i. */
-static void combine(const struct Packed *packed, size_t i, Real *x) {
+static void combine(const struct Packed *packed, const size_t *start, const size_t *column, const Real *m, size_t i,
+                    Real *x) {
   memset(x, 0, i * sizeof *x);
   x[i] = REAL(1.0);
   for (size_t row = i + 1; row-- > 0;) {
-    const Real known = x[row];
-    Condition has_part = known != 0.0;
-    if (!ANYWHERE(has_part)) continue;
-    size_t end = packed_start(packed, row + 1);
-    for (size_t k = packed_start(packed, row); k < end; k++) x[packed_column(packed, k)] -= packed->element[k] * known;
+    Condition has_part = x[row] != 0.0;
+    if (ANYWHERE(has_part)) subtract_row(packed, start, column, m, row, x[row], x);
   }
 }
 
@@ -167,13 +188,13 @@ static Real square_by_mass(const int *coordinate, const struct Given *given, siz
  * Returns minus the pivot of constraint i as w^T M w, where w is the motion that the constraints before it leave free
  * along it. This has the digits of w, while the pivot is a difference of squares. w is refined once by its residual.
  */
-static Real refined_pivot(const struct Packed *packed, const size_t *start, const int *coordinate, const Real *m,
-                          const struct Given *given, size_t i, Real *w) {
+static Real refined_pivot(const struct Packed *packed, const size_t *start, const size_t *column, const int *coordinate,
+                          const Real *m, const struct Given *given, size_t i, Real *w) {
   Real *rest = w + i + 1;
-  combine(packed, i, w);
+  combine(packed, start, column, m, i, w);
   memset(rest, 0, (i + 1) * sizeof *rest);
   subtract_product(i + 1, packed, given, w, rest);
-  solve_packed(i, packed, start, m, rest);
+  solve_below(i, packed, start, column, m, rest);
   for (size_t row = 0; row < i; row++) w[row] += rest[row];
   return square_by_mass(coordinate, given, i, w);
 }
@@ -218,7 +239,7 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
   null_vector[c] = REAL(0.0);
   if (!ANYWHERE(follows)) return;
   const struct Packed packed = packed_of(n, start, column, m);
-  combine(&packed, i, forces);
+  combine(&packed, start, column, m, i, forces);
   for (size_t row = 0, k = 0; row < i; row++)
     if (coordinate[row] < 0) null_vector[k++] = coordinate[row] == SADDLE_NORM ? REAL(0.0) : forces[row];
   null_vector[c] = REAL(1.0);
@@ -228,27 +249,40 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
   null_vector[c] = WHERE(follows, 1.0 / length, 0.0);
 }
 
-/* Packs L where a null-space vector or a refinement needs it. */
-static void pack_all(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m) {
-  const struct Given given = given_of(n, start, column, m);
-  const struct Packed packed = packed_of(n, start, column, m);
-  bool is_needed = ANYWHERE(saddle_is_weak(slot_of_weakest(n, start, column), m));
-  for (size_t i = 0; i < n && !is_needed; i++)
-    is_needed = coordinate[i] < 0 && ldlt_is_idle(m[start[i + 1] - 1]) && ANYWHERE(has_row(&given, i));
-  pack_nothing(&packed);
-  for (size_t i = 0; i < n && is_needed; i++) {
-    bool is_used = coordinate[i] > 0 || ANYWHERE(has_row(&given, i));
-    if (is_used) use_row(&packed, i);
-    if (is_used) pack_row(&packed, start, column, m, i);
-    else pack_empty_row(&packed, i);
-  }
-}
-
 void saddle_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   const struct Given given = given_of(n, start, column, m);
-  pack_all(n, start, column, coordinate, m);
+  const struct Packed packed = packed_of(n, start, column, m);
+  pack_nothing(&packed);
   for (size_t i = 0, c = 0; i < n; i++)
     if (coordinate[i] < 0) find_null_vector(n, start, column, coordinate, m, i, c++, has_row(&given, i));
+}
+
+/* Returns the product of row j of L below its diagonal with spread. */
+static Real product_of_row(const size_t *start, const size_t *column, const Real *m, size_t j, const Real *spread) {
+  Real sum = REAL(0.0);
+  for (size_t e = start[j + 1] - 1; e-- > start[j];) sum += m[e] * spread[column[e]];
+  return sum;
+}
+
+static Real product_of_packed(const struct Packed *packed, size_t j, const Real *spread) {
+  Real sum = REAL(0.0);
+  size_t first = packed_start(packed, j);
+  for (size_t e = packed_start(packed, j + 1); e-- > first;)
+    sum += packed->element[e] * spread[packed_column(packed, e)];
+  return sum;
+}
+
+/* Rows from which on packing may pay. */
+enum { PACKED_ROWS = 50 };
+
+/* True if packing pays: the row of a constraint is 0. */
+static bool is_to_pack(size_t n, const int *coordinate, const struct Given *given) {
+  bool any = false;
+  for (size_t i = 0; i < n && n >= PACKED_ROWS && !any; i++) {
+    Condition takes_part = has_row(given, i);
+    any = coordinate[i] < 0 && !ANYWHERE(takes_part);
+  }
+  return any;
 }
 
 /*
@@ -258,15 +292,12 @@ void saddle_null_vector(size_t n, const size_t *start, const size_t *column, con
 static void eliminate_row(const struct Packed *packed, const size_t *start, const size_t *column, Real *m,
                           const struct Given *given, size_t i, Real *spread) {
   size_t last = start[i + 1] - 1;
+  bool has_list = is_packed(packed);
   for (size_t k = given->start[i]; k < given->start[i + 1]; k++) spread[given->column[k]] = given->matrix[k];
   for (size_t k = start[i]; k < last; k++) {
     size_t j = column[k], diagonal = start[j + 1] - 1;
     if (ldlt_is_idle(m[diagonal])) continue;
-    Real sum = REAL(0.0);
-    size_t first = packed_start(packed, j);
-    for (size_t e = packed_start(packed, j + 1); e-- > first;)
-      sum += packed->element[e] * spread[packed_column(packed, e)];
-    spread[j] -= sum;
+    spread[j] -= has_list ? product_of_packed(packed, j, spread) : product_of_row(start, column, m, j, spread);
   }
   for (size_t k = start[i]; k <= last; k++) {
     m[k] = spread[column[k]];
@@ -281,6 +312,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
   *weakest = REAL(1.0);
   memset(spread, 0, n * sizeof *spread);
   pack_nothing(&packed);
+  bool packs = is_to_pack(n, coordinate, &given);
   for (size_t i = 0, c = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
     Condition takes_part = has_row(&given, i);
@@ -299,8 +331,10 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
       delassus += saddle_delassus(term);
       m[k] = l;
     }
-    use_row(&packed, i);
-    pack_row(&packed, start, column, m, i);
+    if (packs) {
+      use_row(&packed, i);
+      pack_row(&packed, start, column, m, i);
+    }
     if (coordinate[i] > 0) {
       REQUIRE(saddle_is_definite(pivot, diagonal), i + 1);
       m[last] = pivot;
@@ -309,7 +343,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     Real hold = -pivot;
     Condition doubts = saddle_is_doubtful(hold, delassus, *weakest);
     if (ANYWHERE(doubts)) {
-      hold = WHERE(doubts, refined_pivot(&packed, start, coordinate, m, &given, i, work), hold);
+      hold = WHERE(doubts, refined_pivot(&packed, start, column, coordinate, m, &given, i, work), hold);
       memset(spread, 0, n * sizeof *spread);
     }
     m[last] = saddle_pivot(hold, delassus, weakest);
@@ -325,10 +359,10 @@ void saddle_solve(size_t n, const size_t *start, const size_t *column, const Rea
   bool is_refined = ANYWHERE(is_weak);
   if (is_refined) memcpy(rest, x, n * sizeof *rest);
   const struct Packed packed = packed_of(n, start, column, m);
-  solve_packed(n, &packed, start, m, x);
+  solve_below(n, &packed, start, column, m, x);
   if (!is_refined) return;
   subtract_product(n, &packed, &given, x, rest);
-  solve_packed(n, &packed, start, m, rest);
+  solve_below(n, &packed, start, column, m, rest);
   for (size_t i = 0; i < n; i++) x[i] = WHERE(is_weak, x[i] + rest[i], x[i]);
 }
 
