@@ -8,8 +8,8 @@
  * The pattern of L is that of ldlt.h, with e elements. Without fill-in, K has g elements. column holds the e columns of
  * L, then the n + 1 numbers of start for K, and the g columns of K. With c constraints, m holds SADDLE_MASS(e, g, n, c)
  * numbers: the factors, K, the smallest relative pivot of a constraint, 2 n numbers of workspace, L without zeros, and
- * the null space of J^T, see saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the first n are
- * given and solved for.
+ * the null space of J^T, see saddle_least_forces(). Right sides are arrays of SADDLE_RIGHT_SIDE(n) numbers, of which the
+ * first n are given and solved for.
  */
 #ifndef SADDLE_H
 #define SADDLE_H
@@ -20,7 +20,7 @@
 #include "arithmetic.h"
 #include "real.h"
 
-/* Numbers of storage for a block and for a right side, see above. */
+/* Numbers of storage for L without zeros, for a block, and for a right side, see above. */
 #define SADDLE_PACKED(elements, n) ((elements) + (n) + (elements) / 2 + 2)
 #define SADDLE_MASS(elements, given, n, constraints)                                                                   \
   ((elements) + (given) + 1 + 2 * (n) + SADDLE_PACKED(elements, n) + (constraints) * ((constraints) + 1) / 2)

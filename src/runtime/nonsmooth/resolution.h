@@ -9,7 +9,8 @@ enum Forced { UNFORCED, FORCED_OPEN, FORCED_CLOSED };
 /*
  * The part of a contact or friction in the problem that is being solved, struct ContactImpulses or struct RestForces. In
  * the latter IS_OVERCOME is a friction that slips at its limit, and WAS_OPEN a contact that may close. IS_SLOW is a
- * friction that slid, and continues with its velocity if it does not stick.
+ * friction that slid, and continues with its velocity if it does not stick. In a short step its rate, or that of a
+ * contact whose bounce is lost, counts as 0 (end_slip.c).
  */
 enum Part { LEFT_OUT, TAKES_PART, IS_OVERCOME, IS_SLOW, WAS_OPEN };
 

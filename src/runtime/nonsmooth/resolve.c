@@ -134,15 +134,14 @@ static const char *resolve_once(struct Resolution *resolution, bool *again) {
 
 static const char *resolve_in_rounds(struct Resolution *resolution) {
   const char *problem = NULL;
-  bool again = true, has_begun = false;
+  bool again = true;
   for (int round = 0; problem == NULL && again; round++) {
     if (round == ROUND_LIMIT) return "events follow each other without end (Zeno behaviour)";
     if (!resolution_evaluate(resolution)) {
-      if (!resolution_ends_slip(resolution)) return no_accelerations;
+      if (round == 0 || !resolution_ends_slip(resolution)) return no_accelerations;
       continue;
     }
-    if (!has_begun) conditions_begin(resolution);
-    has_begun = true;
+    if (round == 0) conditions_begin(resolution);
     problem = resolve_once(resolution, &again);
   }
   return problem;

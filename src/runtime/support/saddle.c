@@ -91,15 +91,11 @@ static void pack_nothing(const struct Packed *packed) {
   list(packed, 1 + packed->n, 0);
 }
 
-static void use_row(const struct Packed *packed, size_t row) {
-  size_t count = used_count(packed);
-  list(packed, 1 + count, row);
-  list(packed, 0, count + 1);
-}
-
-/* Packs the next row of L; one without elements of K has none. */
+/* Packs the next row of L, and takes it into use. */
 static void pack_row(const struct Packed *packed, const size_t *start, const size_t *column, const Real *m, size_t i) {
-  size_t end = packed_start(packed, i);
+  size_t end = packed_start(packed, i), count = used_count(packed);
+  list(packed, 1 + count, i);
+  list(packed, 0, count + 1);
   for (size_t k = start[i]; k + 1 < start[i + 1]; k++) {
     Condition is_part = m[k] != 0.0;
     if (!ANYWHERE(is_part)) continue;
@@ -109,6 +105,7 @@ static void pack_row(const struct Packed *packed, const size_t *start, const siz
   list(packed, 2 + packed->n + i, end);
 }
 
+/* Packs the next row, that of a constraint without elements of K. */
 static void pack_empty_row(const struct Packed *packed, size_t i) {
   list(packed, 2 + packed->n + i, packed_start(packed, i));
 }
@@ -278,7 +275,8 @@ enum { PACKED_ROWS = 50 };
 /* True if packing pays: the row of a constraint is 0. */
 static bool is_to_pack(size_t n, const int *coordinate, const struct Given *given) {
   bool any = false;
-  for (size_t i = 0; i < n && n >= PACKED_ROWS && !any; i++) {
+  if (n < PACKED_ROWS) return false;
+  for (size_t i = 0; i < n && !any; i++) {
     Condition takes_part = has_row(given, i);
     any = coordinate[i] < 0 && !ANYWHERE(takes_part);
   }
@@ -319,7 +317,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
     if (coordinate[i] < 0 && !ANYWHERE(takes_part)) {
       m[last] = REAL(-INFINITY);
       m[slot_of_null_vector(n, start, column, c) + c] = REAL(0.0);
-      pack_empty_row(&packed, i);
+      if (packs) pack_empty_row(&packed, i);
       c++;
       continue;
     }
@@ -331,10 +329,7 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
       delassus += saddle_delassus(term);
       m[k] = l;
     }
-    if (packs) {
-      use_row(&packed, i);
-      pack_row(&packed, start, column, m, i);
-    }
+    if (packs) pack_row(&packed, start, column, m, i);
     if (coordinate[i] > 0) {
       REQUIRE(saddle_is_definite(pivot, diagonal), i + 1);
       m[last] = pivot;

@@ -46,23 +46,29 @@ bool cone_impulses_find(const struct Resolution *resolution, const struct Contac
   return is_done;
 }
 
+/* Continues from impulses of other rates by Newton's method. Returns the relative residual; size: the largest impulse. */
+static double continue_by_newton(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                                 const double *rate, double *impulse, double *size) {
+  struct Cones cones;
+  *size = 0.0;
+  if (!create_cones(resolution, impulses, rate, impulse, &cones)) return INFINITY;
+  bool moves = cones_fill_scales(&cones);
+  double miss = moves ? cones_relative_miss(&cones, cone_newton(&cones, cones.work)) : INFINITY;
+  *size = cones_largest(&cones);
+  scratch_return(resolution->instance, SCRATCH_CONES);
+  return miss;
+}
+
 bool cone_impulses_continue(const struct Resolution *resolution, const struct ContactImpulses *impulses,
                             const double *rate, double *impulse) {
-  struct Cones cones;
-  if (!create_cones(resolution, impulses, rate, impulse, &cones)) return false;
-  bool is_done =
-      cones_fill_scales(&cones) && cones_relative_miss(&cones, cone_newton(&cones, cones.work)) <= law_nearly_holds;
-  scratch_return(resolution->instance, SCRATCH_CONES);
-  return is_done;
+  double size;
+  return continue_by_newton(resolution, impulses, rate, impulse, &size) <= law_nearly_holds;
 }
 
 bool cone_forces_continue(const struct Resolution *resolution, const struct ContactImpulses *impulses,
                           const double *rate, double *force, double *error) {
-  struct Cones cones;
-  if (!create_cones(resolution, impulses, rate, force, &cones)) return false;
-  double miss = cones_fill_scales(&cones) ? cones_relative_miss(&cones, cone_newton(&cones, cones.work)) : INFINITY;
-  *error = 2.0 * miss * cones_largest(&cones);
-  scratch_return(resolution->instance, SCRATCH_CONES);
+  double size, miss = continue_by_newton(resolution, impulses, rate, force, &size);
+  *error = 2.0 * miss * size;
   return miss <= law_roughly_holds;
 }
 

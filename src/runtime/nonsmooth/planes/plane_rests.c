@@ -351,17 +351,6 @@ static void slide_on_chosen(struct Resolution *resolution) {
   }
 }
 
-bool plane_rests_find_with_contacts(struct Resolution *resolution) {
-  bool stops;
-  if (resolution->has_found_forces) return false;
-  resolution->has_found_forces = true;
-  resolution_keep_modes(resolution);
-  choose_at_rest(resolution, true);
-  slide_on_chosen(resolution);
-  bool is_found = plane_stops_motion(resolution, &stops) && find_slips(resolution, true, false);
-  return found_or_restored(resolution, is_found && bring_to_rest(resolution, stops));
-}
-
 /* Lets slow frictions slide on, where they have a velocity. */
 static void let_moving_pass(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
@@ -371,11 +360,26 @@ static void let_moving_pass(struct Resolution *resolution) {
   }
 }
 
-bool plane_rests_continue(struct Resolution *resolution, bool stops) {
-  if (++resolution->continued_forces > CONTINUE_LIMIT) return false;
+/*
+ * Finds the modes with the contacts at rest. A continuation from the forces of a short step knows whether the motion
+ * stops; else slow frictions slide on.
+ */
+static bool find_with_contacts(struct Resolution *resolution, bool continues, bool stops) {
   resolution_keep_modes(resolution);
   choose_at_rest(resolution, true);
-  if (!stops) let_moving_pass(resolution);
+  if (continues && !stops) let_moving_pass(resolution);
   slide_on_chosen(resolution);
-  return found_or_restored(resolution, find_slips(resolution, true, true) && bring_to_rest(resolution, stops));
+  bool is_found = (continues || plane_stops_motion(resolution, &stops)) && find_slips(resolution, true, continues) &&
+                  bring_to_rest(resolution, stops);
+  return found_or_restored(resolution, is_found);
+}
+
+bool plane_rests_find_with_contacts(struct Resolution *resolution) {
+  if (resolution->has_found_forces) return false;
+  resolution->has_found_forces = true;
+  return find_with_contacts(resolution, false, false);
+}
+
+bool plane_rests_continue(struct Resolution *resolution, bool stops) {
+  return ++resolution->continued_forces <= CONTINUE_LIMIT && find_with_contacts(resolution, true, stops);
 }

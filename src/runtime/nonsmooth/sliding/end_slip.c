@@ -38,7 +38,6 @@ struct ShortStep {
   double *impulse, *work; /* of each row; workspace */
   double tau, ahead;      /* in s; largest change of a rate by tau a */
   double slip;            /* the largest before the step */
-  bool stops;             /* small rates count as 0 */
   bool has_forces;        /* there are finite forces, kept in guess[] of the event resolution */
 };
 
@@ -55,7 +54,7 @@ static bool has_stopped(const struct ShortStep *step, size_t row) {
   const struct Resolution *resolution = step->resolution;
   size_t member = step->impulses.member[row];
   bool is_contact = row < step->impulses.contact_count;
-  return step->stops && (is_contact ? resolution->part[member] : *part_of_friction(resolution, member)) == IS_SLOW;
+  return (is_contact ? resolution->part[member] : *part_of_friction(resolution, member)) == IS_SLOW;
 }
 
 /* Fills the rates after the time tau, given its share. */
@@ -192,16 +191,14 @@ static bool begin_anew(struct Resolution *resolution) {
   return let_stopped_slip(resolution);
 }
 
-/* Selects the contacts that touch, and all frictions. Those whose rates are small are slow: a lost bounce, for one. */
-static size_t choose_touching_and_slow(struct Resolution *resolution) {
+/* Marks those that take part and have small rates: contacts whose bounces are lost, and slow frictions. */
+static void mark_slow(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  size_t count = choose_touching(resolution, TAKES_PART);
   for (size_t i = 0; i < switches->contact_count; i++)
     if (resolution->part[i] != LEFT_OUT && contact_is_at_rest(resolution, i)) resolution->part[i] = IS_SLOW;
   for (size_t i = 0; i < switches->friction_count; i++)
     if (is_in_plane(switches, i) && switches->friction_laws->is_slow(resolution, plane_of(switches, i)))
       *part_of_friction(resolution, i) = IS_SLOW;
-  return count;
 }
 
 /* Finds the modes from the forces of a step. False if there are none. */
@@ -215,10 +212,11 @@ static bool continue_forces(struct Resolution *resolution, bool stops) {
 
 /* Ends a slip by a step, or finds the modes from its forces. stops: small rates count as 0. False if that fails. */
 static bool end_slip_by_step(struct Resolution *resolution, bool stops) {
-  struct ShortStep step = {.resolution = resolution, .stops = stops};
+  struct ShortStep step = {.resolution = resolution};
   bool changed = resolution->changed, is_done = false;
-  if (!resolution_evaluate(resolution) && stops) return false; /* accelerations decide on what is slow */
-  if (choose_touching_and_slow(resolution) < 2) return false;
+  if (stops && !resolution_evaluate(resolution)) return false; /* accelerations decide on what is slow */
+  if (choose_touching(resolution, TAKES_PART) < 2) return false;
+  if (stops) mark_slow(resolution);
   resolution_keep_modes(resolution);
   release_chosen(resolution);
   if (resolution_evaluate(resolution) && contact_impulses_create(resolution, &step.impulses)) {
