@@ -193,10 +193,15 @@ static int print_value(const char *text, const char *unit) {
 /* Memory limit in bytes; systems within the other limits hardly reach it. */
 enum { MEMORY_LIMIT = 640 << 20 };
 
+/* The file in compilation, which the message about missing memory names; before it, the program. */
+static const char *file_in_work = "lagc";
+
 static _Noreturn void end_without_memory(void) {
-  fputs("lagc: out of memory: the system needs more than there is, or more than 640 MB; expected fewer or shorter "
-        "repetitions, tables, frames, constraints or outputs, or fewer shapes that touch, as by ground=\"LINKS\"\n",
-        stderr);
+  fprintf(stderr,
+          "%s: error: out of memory: the system needs more than there is, or more than 640 MB; expected fewer or "
+          "shorter repetitions, tables, frames, constraints or outputs, or fewer shapes that touch, as by "
+          "ground=\"LINKS\"\n",
+          file_in_work);
   exit(1);
 }
 
@@ -223,7 +228,10 @@ int main(int count, char **words) {
   else if (arguments.words) status = !print_words();
   else if (arguments.version) status = puts("lagc " LAGC_VERSION) < 0;
   else if (arguments.value != NULL) status = print_value(arguments.value, arguments.unit);
-  else status = run(&arguments);
+  else {
+    file_in_work = arguments.system;
+    status = run(&arguments);
+  }
   xmlCleanupParser();
   return status;
 }

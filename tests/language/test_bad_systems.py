@@ -353,7 +353,7 @@ def test_without_memory(tmp_path):
         [LAGC, "system.xml", "-o", "out"], cwd=tmp_path, capture_output=True, text=True,
         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit, limit)),
     )  # fmt: skip
-    assert result.returncode == 1 and re.fullmatch("lagc: out of memory: .*; expected .*\n", result.stderr)
+    assert result.returncode == 1 and re.fullmatch("system.xml: error: out of memory: .*; expected .*\n", result.stderr)
     assert not (tmp_path / "out" / "system.c").exists()
 
 

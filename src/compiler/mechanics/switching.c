@@ -10,29 +10,34 @@
 #include "model/resting_velocities.h"
 #include "model/time_derivative.h"
 
+/* Appends the expressions of constraints, contacts, frictions and events, on which modes and velocities depend. */
+static void append_laws(const struct Model *model, struct NodeList *roots) {
+  const struct Switches *switches = &model->switches;
+  for (size_t i = 0; i < model->constraints.count; i++) append_node(roots, model->constraints.items[i].node);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    append_node(roots, switches->contacts[i].gap);
+    append_node(roots, switches->contacts[i].restitution);
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    append_node(roots, switches->frictions[i].mode);
+    append_node(roots, switches->frictions[i].velocity);
+    append_node(roots, switches->frictions[i].stiction);
+    append_node(roots, switches->frictions[i].stiction_back);
+  }
+  for (size_t i = 0; i < switches->event_count; i++) {
+    const struct Event *event = &switches->events[i];
+    append_node(roots, event->condition);
+    for (size_t j = 0; j < event->assignment_count; j++) append_node(roots, event->assignments[j].value);
+  }
+}
+
 /* Collects the expressions that determine the motion. */
 static struct NodeList roots_of(const struct Model *model, const struct Equations *equations) {
-  const struct Switches *switches = &model->switches;
   struct NodeList roots = {0};
   for (size_t i = 0; i < row_count(equations); i++) append_node(&roots, equations->residual[i]);
   append_node(&roots, equations->power);
   append_nodes(&roots, equations->rates.nodes, equations->rates.count);
-  for (size_t i = 0; i < model->constraints.count; i++) append_node(&roots, model->constraints.items[i].node);
-  for (size_t i = 0; i < switches->contact_count; i++) {
-    append_node(&roots, switches->contacts[i].gap);
-    append_node(&roots, switches->contacts[i].restitution);
-  }
-  for (size_t i = 0; i < switches->friction_count; i++) {
-    append_node(&roots, switches->frictions[i].mode);
-    append_node(&roots, switches->frictions[i].velocity);
-    append_node(&roots, switches->frictions[i].stiction);
-    append_node(&roots, switches->frictions[i].stiction_back);
-  }
-  for (size_t i = 0; i < switches->event_count; i++) {
-    const struct Event *event = &switches->events[i];
-    append_node(&roots, event->condition);
-    for (size_t j = 0; j < event->assignment_count; j++) append_node(&roots, event->assignments[j].value);
-  }
+  append_laws(model, &roots);
   return roots;
 }
 
@@ -77,6 +82,33 @@ static void find_branches(const struct Model *model, struct NodeList *roots, str
     if (!is_used[i]) continue;
     switching->holds_energy[switching->branch_count] = switching->holds_energy[i];
     switching->branches[switching->branch_count++] = &switches->branches[i];
+  }
+}
+
+/* Finds the branches whose modes occur in no energy, law or indicator of an event. */
+static void find_branches_of_forces(const struct Model *model, const struct Equations *equations,
+                                    struct SwitchingExpressions *switching) {
+  const struct Switches *switches = &model->switches;
+  struct NodeList others = {0};
+  append_node(&others, equations->kinetic);
+  append_node(&others, equations->potential);
+  append_laws(model, &others);
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    append_node(&others, switches->frictions[i].sliding);
+    append_node(&others, switches->frictions[i].sliding_back);
+  }
+  for (size_t i = 0; i < switches->event_count; i++) {
+    if (switches->events[i].passage != PASSAGE_SAMPLES) continue;
+    append_node(&others, switches->events[i].sample.every);
+    append_node(&others, switches->events[i].sample.offset);
+  }
+  for (size_t i = 0; i < switching->branch_count; i++)
+    if (switching->branches[i]->is_last_sign) append_node(&others, switching->branches[i]->indicator);
+  cone_collect(model->graph->cone, model->graph, others.nodes, others.count);
+  switching->is_of_forces = allocate(switching->branch_count, sizeof(bool));
+  for (size_t i = 0; i < switching->branch_count; i++) {
+    const struct Branch *branch = switching->branches[i];
+    switching->is_of_forces[i] = !branch->is_last_sign && !cone_has(model->graph->cone, branch->mode);
   }
 }
 
@@ -387,6 +419,7 @@ struct SwitchingExpressions *switching_derive(const struct Model *model, const s
   struct NodeList roots = roots_of(model, equations), watched = {0}, values = {0};
   find_energies(model, equations, switching);
   find_branches(model, &roots, switching);
+  find_branches_of_forces(model, equations, switching);
   struct SwitchTable counts = count_switches(model, switching);
   switching->assignment_count = counts.assignment_count;
   fill_indicators(model, &counts, switching);

@@ -21,6 +21,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "instance/active_constraints.h"
 #include "support/arena.h"
 
 /* Iterations from a state near the constraints, and from start values. */
@@ -162,22 +163,27 @@ static double project_velocities(struct Instance *instance, double time, double 
   return size;
 }
 
-/* True if all constraints are those of frictions, which do not restrict coordinates. */
-static bool holds_velocities_alone(void) {
-  return lagrangian.switches != NULL && lagrangian.constraints.count == lagrangian.switches->friction_count;
+/* True if all constraints are those of frictions, which do not restrict coordinates, and of open contacts. */
+static bool holds_velocities_alone(const struct Instance *instance) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  if (switches == NULL || lagrangian.constraints.count != switches->friction_count + switches->contact_count)
+    return false;
+  bool any_closed = false;
+  for (size_t i = 0; i < switches->contact_count; i++) any_closed |= contact_holds(instance, i);
+  return !any_closed;
 }
 
 static double project(struct Instance *instance, double time, double *state) {
   const struct ProjectionWork *work = instance->projection_work;
   double size = INFINITY, before;
   memcpy(work->start, state, lagrangian.state_count * sizeof *state);
-  if (holds_velocities_alone()) return project_velocities(instance, time, state);
+  if (holds_velocities_alone(instance)) return project_velocities(instance, time, state);
   memset(work->moved, 0, lagrangian.state_count * sizeof *work->moved);
   for (int iteration = 0; iteration < STEP_LIMIT; iteration++) {
     if (!evaluate_residual(instance, time, state, POSITIONS)) return INFINITY;
     before = size;
     size = size_of(work->change, state, 0);
-    bool is_rounded = size <= rounded_away && residual_is_rounding(instance, time, state);
+    bool is_rounded = size > 0.0 && size <= rounded_away && residual_is_rounding(instance, time, state);
     bool is_done = is_rounded || size <= converged || (size <= rounded_away && size >= before);
     if (is_done && !others_hold(work, state, 0)) return INFINITY;
     if (!is_rounded) move_positions(work, state, 1.0);

@@ -1,8 +1,10 @@
 #include "nonsmooth/branches.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "evaluation/evaluate.h"
+#include "evaluation/services.h"
 #include "nonsmooth/continuity.h"
 #include "detection/indicators.h"
 #include "instance/active_constraints.h"
@@ -173,6 +175,61 @@ const char *branches_switch(struct Resolution *resolution, bool last_signs, bool
   return NULL;
 }
 
+/* Relative to the largest acceleration or force: at a located zero, smaller jumps are rounding errors. */
+static const double least_jump = 1e-9;
+
+/* True if count numbers are the same before and behind a zero; false if one is NAN. */
+static bool numbers_stay(const double *before, const double *behind, size_t count) {
+  double largest = 0.0;
+  bool stay = true;
+  for (size_t i = 0; i < count; i++) largest = fmax(largest, fmax(fabs(before[i]), fabs(behind[i])));
+  for (size_t i = 0; i < count; i++) stay &= fabs(behind[i] - before[i]) <= least_jump * largest;
+  return stay;
+}
+
+/* True if the last evaluation has the accelerations and the constraint forces of before. */
+static bool accelerations_stay(const struct Resolution *resolution, const double *before) {
+  const double *behind = resolution_accelerations(resolution);
+  size_t n = lagrangian.coordinate_count;
+  return numbers_stay(before, behind, n) && numbers_stay(before + n, behind + n, lagrangian.constraints.count);
+}
+
+/* True if the indicators in value[] have the signs of the modes of all branches, but for this one at its zero. */
+static bool signs_stay(const struct Resolution *resolution, size_t branch) {
+  const struct SwitchTable *switches = resolution->switches;
+  bool stay = true;
+  for (size_t i = 0; i < switches->branch_count; i++)
+    stay &= i == branch || resolution->value[i] * mode_of(resolution, switches->branches[i].mode) >= 0.0;
+  return stay;
+}
+
+/* True if the event is the zero of a branch of forces, at which an importer has set nothing. */
+static bool may_be_kink(const struct Resolution *resolution) {
+  size_t branch = resolution->indicator;
+  if (resolution->occasion != AT_EVENT || branch >= resolution->switches->branch_count) return false;
+  const struct BranchMetadata *metadata = &resolution->switches->branches[branch];
+  bool has_set = resolution->instance->fmu_state->changed == CHANGED_VALUES;
+  return metadata->is_of_forces && mode_of(resolution, metadata->mode) != 0.0 && !has_set;
+}
+
+bool branches_pass_kink(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  if (!may_be_kink(resolution) || !resolution_find_accelerations(resolution)) return false;
+  size_t branch = resolution->indicator, index = switches->branches[branch].mode;
+  double mode = mode_of(resolution, index), *before = resolution->correction;
+  size_t count = lagrangian.coordinate_count + lagrangian.constraints.count;
+  memcpy(before, resolution_accelerations(resolution), count * sizeof *before);
+  resolution_set_mode(resolution, index, -mode);
+  if (resolution_find_accelerations(resolution) && accelerations_stay(resolution, before)) {
+    struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+    switches->indicators(&point, resolution_accelerations(resolution), resolution->value);
+    if (signs_stay(resolution, branch)) return true;
+  }
+  resolution_set_mode(resolution, index, mode);
+  resolution->changed = false;
+  return false;
+}
+
 const char *branches_check(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   if (resolution->occasion != IN_EXCHANGE || resolution->jumped || resolution->set_mode) return NULL;
@@ -200,11 +257,15 @@ static double sign_at_start(const struct Resolution *resolution, size_t branch) 
 
 bool branches_begin(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  for (size_t round = 0; round <= switches->branch_count; round++) {
+  bool stay = false;
+  for (size_t round = 0; round <= switches->branch_count && !stay; round++) {
     if (!resolution_evaluate(resolution)) return false;
-    for (size_t i = 0; i < switches->branch_count; i++)
-      resolution_set_mode(resolution, switches->branches[i].mode,
-                          waits_for_event_mode(resolution, i) ? 1.0 : sign_at_start(resolution, i));
+    stay = true;
+    for (size_t i = 0; i < switches->branch_count; i++) {
+      double mode = waits_for_event_mode(resolution, i) ? 1.0 : sign_at_start(resolution, i);
+      stay &= mode == mode_of(resolution, switches->branches[i].mode);
+      resolution_set_mode(resolution, switches->branches[i].mode, mode);
+    }
   }
   return true;
 }

@@ -9,6 +9,12 @@
  */
 const char *branches_switch(struct Resolution *resolution, bool last_signs, bool *switched);
 
+/*
+ * Switches the branch of a located event if the forces have a kink there: the accelerations and all other signs stay,
+ * and so do all other modes. Else false, and nothing is changed.
+ */
+bool branches_pass_kink(struct Resolution *resolution);
+
 /* Returns NULL, or the reason why an importer would come back to a zero again and again: both signs lead back to it. */
 const char *branches_check(struct Resolution *resolution);
 

@@ -88,6 +88,12 @@ static bool find_accelerations(struct Resolution *resolution, const struct Point
   return instance->singular == 0;
 }
 
+bool resolution_find_accelerations(struct Resolution *resolution) {
+  if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
+  struct Point point = solver_point(resolution->instance, resolution->time, resolution->state);
+  return find_accelerations(resolution, &point);
+}
+
 bool resolution_values_near(struct Resolution *resolution, double time, const double *state, double *value) {
   struct Point point = solver_point(resolution->instance, time, state);
   if (!resolution->keeps_accelerations && !find_accelerations(resolution, &point)) return false;

@@ -193,6 +193,9 @@ bool resolution_values_near(struct Resolution *resolution, double time, const do
 void resolution_values_of_force(const struct Resolution *resolution, const struct Point *point, size_t constraint,
                                 double force, double *value);
 
+/* Evaluates the accelerations for the present modes and state. False if they do not exist. */
+bool resolution_find_accelerations(struct Resolution *resolution);
+
 /* Returns the accelerations of the last evaluation. */
 const double *resolution_accelerations(const struct Resolution *resolution);
 

@@ -6,6 +6,8 @@
  * and so are more than ROUND_LIMIT rounds. A round costs a few evaluations of the accelerations, which also bound their
  * rounding errors.
  *
+ * A kink of forces needs no rounds (branches_pass_kink()).
+ *
  * Then velocities are projected onto the constraints, and the result is checked. Energies and positions must not
  * jump where no event sets them, and contacts and frictions must obey their laws.
  */
@@ -254,6 +256,13 @@ static bool lifts(const struct Resolution *resolution) {
          value[CONTACT_RATE] >= -error_bound[CONTACT_RATE];
 }
 
+static const char *note_kink(struct Instance *instance, bool *changed) {
+  instance->fmu_state->statistics[STATISTIC_EVENTS]++;
+  instance->lifts = false;
+  *changed = true;
+  return NULL;
+}
+
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                     bool *changed) {
   struct Resolution resolution = resolution_at(instance, time, state, occasion);
@@ -262,6 +271,7 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
                             mode_of(&resolution, resolution.switches->branches[indicator].mode) == 0.0;
   resolution.is_beside_departure = time == instance->departure_time;
   if (resolution.is_departure) instance->departure_time = time;
+  if (branches_pass_kink(&resolution)) return note_kink(instance, changed);
   for (size_t i = 0; i < switching_count(resolution.switches); i++)
     resolution.first_mode[i] = switching_mode(&resolution, i);
   const char *problem = begin_resolution(&resolution);
