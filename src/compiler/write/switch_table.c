@@ -16,10 +16,10 @@ static const char *const resting_kinds[] = {[RESTING_VELOCITY] = "RESTING_VELOCI
                                             [RESTING_SUM] = "RESTING_SUM"};
 
 static const struct ElementType
-    branches = STRUCT_TYPE(BranchMetadata, FIELD(BranchMetadata, mode), FIELD(BranchMetadata, function),
-                           FIELD(BranchMetadata, file), FIELD(BranchMetadata, line),
-                           FIELD(BranchMetadata, is_last_sign), FIELD(BranchMetadata, holds_energy),
-                           FIELD(BranchMetadata, is_of_forces)),
+    branches =
+        STRUCT_TYPE(BranchMetadata, FIELD(BranchMetadata, mode), FIELD(BranchMetadata, function),
+                    FIELD(BranchMetadata, file), FIELD(BranchMetadata, line), FIELD(BranchMetadata, is_last_sign),
+                    FIELD(BranchMetadata, holds_energy), FIELD(BranchMetadata, is_of_forces)),
     contacts = STRUCT_TYPE(ContactMetadata, FIELD(ContactMetadata, mode), FIELD(ContactMetadata, constraint),
                            FIELD(ContactMetadata, carried), FIELD(ContactMetadata, name),
                            FIELD(ContactMetadata, restitution_is_constant)),

@@ -10,8 +10,8 @@
 const char *branches_switch(struct Resolution *resolution, bool last_signs, bool *switched);
 
 /*
- * Switches the branch of a located event if the forces have a kink there: the accelerations and all other signs stay,
- * and so do all other modes. Else false, and nothing is changed.
+ * Switches the branch of a located event if the forces have a kink there. The accelerations and all other signs stay
+ * then, and so do all other modes. Else returns false, and changes nothing.
  */
 bool branches_pass_kink(struct Resolution *resolution);
 

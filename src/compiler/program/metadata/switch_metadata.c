@@ -17,9 +17,13 @@ static const struct BranchMetadata *branches_of(const struct Program *program) {
   for (size_t i = 0; i < switching->branch_count; i++) {
     const struct Branch *branch = switching->branches[i];
     struct FileLine slot = noted_line(program->model->lines, branch->line);
-    metadata[i] = (struct BranchMetadata){
-        mode_index(program, branch->mode), branch->function, file_name(slot.file), slot.line, branch->is_last_sign,
-        switching->holds_energy[i], switching->is_of_forces[i]};
+    metadata[i] = (struct BranchMetadata){mode_index(program, branch->mode),
+                                          branch->function,
+                                          file_name(slot.file),
+                                          slot.line,
+                                          branch->is_last_sign,
+                                          switching->holds_energy[i],
+                                          switching->is_of_forces[i]};
   }
   return metadata;
 }
