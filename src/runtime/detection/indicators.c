@@ -70,14 +70,17 @@ double indicator_at(struct Instance *instance, double time, const double *state,
 }
 
 void indicators_at_times(struct Instance *instance, const double *times, size_t count, const double *states,
-                         double *indicators) {
+                         const double *accelerations, double *indicators) {
   size_t width = indicator_count(lagrangian.switches);
+  size_t rows = lagrangian.coordinate_count + lagrangian.constraints.count;
   struct Point point = instance_point(instance);
   bool forces = feels_forces(instance);
   for (size_t k = 0; k < count; k++) {
     double *row = indicators + k * width;
+    bool are_known = true;
     solver_move_point(instance, &point, times[k], states + k * lagrangian.state_count);
-    bool are_known = indicators_at_point(instance, &point, forces, row);
+    if (accelerations != NULL) lagrangian.switches->indicators(&point, accelerations + k * rows, row);
+    else are_known = indicators_at_point(instance, &point, forces, row);
     for (size_t i = 0; i < width && !are_known; i++) row[i] = NAN;
   }
 }

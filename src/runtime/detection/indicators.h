@@ -12,9 +12,12 @@ bool indicators_at(struct Instance *instance, double time, const double *state, 
  */
 double indicator_at(struct Instance *instance, double time, const double *state, size_t indicator, double *work);
 
-/* Evaluates the indicators at several times, from rows of states to rows of indicators; NAN if they do not exist. */
+/*
+ * Evaluates the indicators at several times, from rows of states to rows of indicators; NAN if they do not exist.
+ * accelerations: rows of them and of constraint forces, if they are known; else NULL.
+ */
 void indicators_at_times(struct Instance *instance, const double *times, size_t count, const double *states,
-                         double *indicators);
+                         const double *accelerations, double *indicators);
 
 /* True if an indicator is a force at present: of a closed contact, or of a friction that sticks. */
 bool indicator_is_force(const struct Instance *instance, size_t indicator);

@@ -103,13 +103,16 @@ static void sample(struct Search *search, double time, double *values) {
   for (size_t i = 0; i < count && !known; i++) values[i] = NAN;
 }
 
-/* Evaluates the indicators at the nodes of an interval. states: at the nodes; NULL if not all are available. */
-static void sample_interval(struct Search *search, double from, double to, const double *states) {
+/* Evaluates the indicators at the nodes of an interval. */
+static void sample_interval(struct Search *search, double from, double to, const struct IntervalSamples *samples) {
   double times[CHEBYSHEV_NODES];
   size_t count = indicator_count(lagrangian.switches);
   chebyshev_times(from, to, times);
-  if (states != NULL) indicators_at_times(search->instance, times, CHEBYSHEV_NODES, states, search->samples);
-  for (size_t k = 0; k < CHEBYSHEV_NODES && states == NULL; k++) sample(search, times[k], search->samples + k * count);
+  if (samples->states != NULL)
+    indicators_at_times(search->instance, times, CHEBYSHEV_NODES, samples->states, samples->accelerations,
+                        search->samples);
+  for (size_t k = 0; k < CHEBYSHEV_NODES && samples->states == NULL; k++)
+    sample(search, times[k], search->samples + k * count);
 }
 
 static double value_at(struct Search *search, size_t indicator, double time) {
@@ -443,7 +446,7 @@ static double first_sample(const struct Instance *instance, double from, double 
   return first;
 }
 
-bool search_for_event(struct Instance *instance, double from, double to, const double *samples,
+bool search_for_event(struct Instance *instance, double from, double to, const struct IntervalSamples *samples,
                       enum Exactness exactness, double *time, size_t *indicator) {
   size_t count = indicator_count(lagrangian.switches);
   struct Search search = search_of(instance);

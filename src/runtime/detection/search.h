@@ -3,6 +3,8 @@
 
 #include "instance/instance.h"
 
+struct IntervalSamples; /* search_interval.h */
+
 /* TO_ROUNDING: the time of the event, to rounding. BEFORE_IT: a time before the event, which costs less. */
 enum Exactness { TO_ROUNDING, BEFORE_IT };
 
@@ -20,7 +22,7 @@ size_t search_work_count(void);
  * as search_interval_shorten() gives them for this interval. False if no indicator changes its sign. *time is NAN if
  * zeros cannot be separated.
  */
-bool search_for_event(struct Instance *instance, double from, double to, const double *samples,
+bool search_for_event(struct Instance *instance, double from, double to, const struct IntervalSamples *samples,
                       enum Exactness exactness, double *time, size_t *indicator);
 
 /*

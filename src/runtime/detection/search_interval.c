@@ -45,7 +45,7 @@ struct SearchInterval {
 };
 
 size_t search_interval_sample_count(void) {
-  return CHEBYSHEV_NODES * lagrangian.state_count;
+  return CHEBYSHEV_NODES * (lagrangian.state_count + lagrangian.switches->watched_acceleration_count);
 }
 
 /* Computes the states at the nodes of an interval, a row each; NULL if they are not all available. */
@@ -122,64 +122,84 @@ static double error_bound_in_interval(const struct SearchInterval *interval) {
   return error_bound;
 }
 
-/* Expands a sampled quantity about the middle. False if its polynomial does not describe it up to error_bound. */
-static bool expand_sampled(const struct SearchInterval *interval, const double *samples, size_t count, size_t i,
-                           double error_bound, double *series) {
+/*
+ * Expands a sampled quantity about the middle. Returns its last coefficients in units of those of a polynomial that
+ * describes it up to error_bound; INFINITY if it has no value.
+ */
+static double expand_sampled(const struct SearchInterval *interval, const double *samples, size_t count, size_t i,
+                             double error_bound, double *series) {
   double f[CHEBYSHEV_NODES], c[CHEBYSHEV_NODES];
   for (size_t node = 0; node < CHEBYSHEV_NODES; node++) f[node] = samples[node * count + i];
   chebyshev_coefficients(f, c);
   chebyshev_powers(c, 0.5 * (interval->to - interval->from), series);
-  double rounding = 64.0 * DBL_EPSILON * fabs(c[0]);
-  return chebyshev_tail(c) <= resolved_motion * chebyshev_range(c) + fmax(rounding, error_bound);
+  double rounding = 64.0 * DBL_EPSILON * fabs(c[0]), tail = chebyshev_tail(c);
+  double allowed = resolved_motion * chebyshev_range(c) + fmax(rounding, error_bound);
+  return tail <= allowed ? (tail > 0.0 ? tail / allowed : 0.0) : isfinite(tail) ? tail / allowed : INFINITY;
 }
 
-/* Expands the accelerations and forces. False if one is not resolved; interval->function names a constraint's force. */
-static bool expand_accelerations(struct SearchInterval *interval, double error_bound) {
-  size_t count = lagrangian.switches->watched_acceleration_count, i = count;
-  bool is_resolved = true;
-  while (i > 0 && is_resolved) {
-    i--;
-    is_resolved = expand_sampled(interval, interval->accelerations, count, i, error_bound,
-                                 interval->work[lagrangian.switches->watched_acceleration_row + i]);
+/* Expands the states. Returns the largest number of expand_sampled(). */
+static double expand_states(const struct SearchInterval *interval) {
+  double excess = 0.0;
+  for (size_t i = 0; i < lagrangian.state_count; i++) {
+    double rounding = 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i];
+    excess =
+        fmax(excess, expand_sampled(interval, interval->states, lagrangian.state_count, i, rounding, interval->x[i]));
   }
-  bool is_force = !is_resolved && i >= lagrangian.coordinate_count;
-  interval->function = is_force ? lagrangian.constraints.names[i - lagrangian.coordinate_count] : NULL;
-  return is_resolved;
+  return excess;
 }
 
-/* Returns half the length of an interval about the same middle that hides nothing; 0 if unknown. */
+/* Does the same for accelerations and forces; interval->function names a constraint whose force has it above 1. */
+static double expand_accelerations(struct SearchInterval *interval, double error_bound) {
+  size_t count = lagrangian.switches->watched_acceleration_count, n = lagrangian.coordinate_count;
+  double most = 0.0;
+  interval->function = NULL;
+  for (size_t i = 0; i < count; i++) {
+    double excess = expand_sampled(interval, interval->accelerations, count, i, error_bound,
+                                   interval->work[lagrangian.switches->watched_acceleration_row + i]);
+    if (excess > 1.0 && excess > most) interval->function = i >= n ? lagrangian.constraints.names[i - n] : NULL;
+    most = fmax(most, excess);
+  }
+  return most;
+}
+
+/* Expands states, accelerations and forces. Returns the largest number of expand_sampled(). */
+static double expand_motion(struct SearchInterval *interval) {
+  double excess = expand_states(interval);
+  if (excess > 1.0) return excess;
+  if (!sample_accelerations(interval)) return INFINITY;
+  excess = expand_accelerations(interval, force_error_bound * largest_acceleration(interval));
+  return excess > 1.0 ? expand_accelerations(interval, error_bound_in_interval(interval)) : excess;
+}
+
+/* Returns half the length of an interval about the same middle that hides nothing, or is expected to be resolved. */
 static double certain_half(struct SearchInterval *interval) {
   const struct SwitchTable *switches = lagrangian.switches;
   double middle = chebyshev_time(interval->from, interval->to, CHEBYSHEV_NODES / 2);
   size_t states = lagrangian.state_count, forces = switches->watched_acceleration_count;
-  bool is_resolved = sample_accelerations(interval);
-  for (size_t i = 0; i < states && is_resolved; i++)
-    is_resolved = expand_sampled(interval, interval->states, states, i,
-                                 64.0 * DBL_EPSILON * lagrangian.steps.nominal[i], interval->x[i]);
-  double error_bound = is_resolved ? force_error_bound * largest_acceleration(interval) : 0.0;
-  if (!is_resolved || !(expand_accelerations(interval, error_bound) ||
-                        expand_accelerations(interval, error_bound_in_interval(interval))))
-    return 0.0;
+  double half = 0.5 * (interval->to - interval->from), excess = expand_motion(interval);
+  if (excess > 1.0) return half * pow(excess, -1.0 / (CHEBYSHEV_DEGREE - 1)); /* by the last but one coefficient */
   for (size_t i = 0; i < lagrangian.input_count; i++) {
     memset(interval->input[i], 0, sizeof(Series));
     expand_input(interval->instance, i, middle, interval->input[i]);
   }
   struct Point point = solver_point(interval->instance, middle, interval->states + CHEBYSHEV_NODES / 2 * states);
-  struct SeriesLimit limit = {
-      .order = CHEBYSHEV_DEGREE, .step = 0.5 * (interval->to - interval->from), .crosses = true, .surrounds = true};
+  struct SeriesLimit limit = {.order = CHEBYSHEV_DEGREE, .step = half, .crosses = true, .surrounds = true};
   switches->watched_limit(&point, interval->accelerations + CHEBYSHEV_NODES / 2 * forces,
                           (const Series *)interval->input, (const Series *)interval->x, interval->work, &limit);
   interval->function = limit.function;
   return limit.step;
 }
 
-bool search_interval_shorten(struct Instance *instance, double from, double *to, const double **samples) {
+bool search_interval_shorten(struct Instance *instance, double from, double *to, struct IntervalSamples *samples) {
+  const struct SwitchTable *switches = lagrangian.switches;
   for (;;) {
-    *samples = sample_states(instance, from, *to);
-    if (lagrangian.switches->watched_limit == NULL) return true;
+    *samples = (struct IntervalSamples){.states = sample_states(instance, from, *to)};
+    if (switches->watched_limit == NULL) return true;
     struct SearchInterval interval = interval_of(instance, from, *to);
-    double length = *to - from, half = *samples != NULL ? certain_half(&interval) : 0.0;
-    if (half >= 0.5 * length) return true;
+    double length = *to - from, half = samples->states != NULL ? certain_half(&interval) : 0.0;
+    bool is_certain = half >= 0.5 * length;
+    if (is_certain && switches->watched_acceleration_count > 0) samples->accelerations = interval.accelerations;
+    if (is_certain) return true;
     double shorter = fmin(fmax(2.0 * half, 0.125 * length), 0.5 * length);
     if (shorter <= 16.0 * DBL_EPSILON * fabs(from) || !(from + shorter > from)) {
       instance->limited_by = interval.function;

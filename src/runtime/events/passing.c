@@ -46,7 +46,8 @@ static const double further_steps = 16.0, further_share = 2.0, share_before_even
 
 /*
  * Length of the first interval, relative to the time between the last two events, and of each further one, relative to
- * the one before. Each costs nine evaluations of all indicators.
+ * the one before. Behind an interval that was too long, further ones grow by the former. Each costs nine evaluations of
+ * all indicators.
  */
 static const double look_ahead_share = 1.25, look_ahead_growth = 8.0;
 
@@ -128,15 +129,16 @@ static const char *stop_at_event(struct Instance *instance, struct Communication
 /* Finds the next event up to an end. False if there is none. *time is NAN if it cannot be located. */
 static bool find_next(struct Instance *instance, double end, struct EventProgress *progress, double *time,
                       size_t *indicator) {
-  double look_ahead = look_ahead_share * progress->distance;
+  double look_ahead = look_ahead_share * progress->distance, growth = look_ahead_growth;
   while (progress->searched < end) {
-    double near = look_ahead > 0.0 ? fmin(end, progress->searched + look_ahead) : end;
+    double near = look_ahead > 0.0 ? fmin(end, progress->searched + look_ahead) : end, longest = near;
     *time = NAN;
-    const double *samples;
+    struct IntervalSamples samples;
     bool is_sure = search_interval_shorten(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
-    if (search_for_event(instance, progress->searched, near, samples, TO_ROUNDING, time, indicator)) return true;
-    look_ahead = look_ahead_growth * (near - progress->searched);
+    if (search_for_event(instance, progress->searched, near, &samples, TO_ROUNDING, time, indicator)) return true;
+    if (near < longest) growth = look_ahead_share;
+    look_ahead = growth * (near - progress->searched);
     progress->searched = near;
     progress->close_events = 0;
   }
@@ -169,10 +171,10 @@ static void search_further(struct Instance *instance, const struct Communication
   if (!may_go_further(instance, step, progress) || !(to > step->end)) return;
   int singular = instance->singular;
   const char *limited_by = instance->limited_by;
-  const double *samples;
+  struct IntervalSamples samples;
   size_t indicator;
   if (search_interval_shorten(instance, from, &to, &samples)) {
-    bool happens = search_for_event(instance, from, to, samples, BEFORE_IT, &time, &indicator);
+    bool happens = search_for_event(instance, from, to, &samples, BEFORE_IT, &time, &indicator);
     if (!happens) progress->searched = to;
     else if (!isnan(time)) progress->searched = from + share_before_event * (time - from);
   }
