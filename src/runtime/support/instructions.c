@@ -103,6 +103,12 @@ static inline uint32_t space_of_operand(uint32_t spaces, int number) {
   return spaces >> number * SPACE_BITS & SPACE_MASK;
 }
 
+/* Sets count numbers to one. Returns the code behind the operands of a run. */
+static const int32_t *fill(Real *numbers, Real value, uint32_t count, const int32_t *code) {
+  for (uint32_t i = 0; i < count; i++) numbers[i] = value;
+  return code + 4;
+}
+
 int instructions_run(const struct Frame *frame, const int32_t *code) {
   Real *const *base = frame->base;
   for (;;) {
@@ -114,7 +120,12 @@ int instructions_run(const struct Frame *frame, const int32_t *code) {
     const Real *a = base[space_of_operand(spaces, 1)], *b = base[space_of_operand(spaces, 2)];
     code += 3;
     switch (opcode) {
-    case COPY: EACH(2, R = A);
+    case COPY:
+      if (is_spaced && code[1] == 1 && code[3] == 0) { /* elements of K that are 0 before the factorization */
+        code = fill(r + code[0], a[code[2]], count, code);
+        break;
+      }
+      EACH(2, R = A);
     case FIRST_SLOPE: EACH(2, R = (&A)[1]);
     case SUM: EACH(3, R = A + B);
     case DIFFERENCE: EACH(3, R = A - B);
