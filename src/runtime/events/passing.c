@@ -439,13 +439,47 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   return pass_event(instance, step, time, indicator, progress);
 }
 
+/* In units of the scales: how far coordinates are moved beyond a jam that the solver approaches. */
+static const double beyond_jam[] = {1e-12, 1e-10, 1e-8};
+enum { JAM_TRIALS = sizeof beyond_jam / sizeof *beyond_jam };
+
+/* Moves the coordinates of event_state along the velocities by a share of their scales. Returns the time that takes. */
+static double move_coordinates(const struct Instance *instance, double share) {
+  double *state = instance->event_state, fastest = 0.0;
+  size_t n = lagrangian.coordinate_count;
+  for (size_t i = 0; i < n; i++) fastest = fmax(fastest, fabs(state[n + i]) / scale_of(state, i));
+  double moment = fastest > 0.0 ? share / fastest : 0.0;
+  for (size_t i = 0; i < n; i++) state[i] += moment * state[n + i];
+  return moment;
+}
+
+/*
+ * Passes a jam of several contacts, which friction presses together ever more strongly: beyond it there are no forces,
+ * and an impulse ends the slip. False if there is none.
+ */
+static bool pass_jam(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
+  const struct SlidingLaws *laws = lagrangian.switches->sliding_laws;
+  double last = instance->fmu_state->last_step.end;
+  if (laws == NULL) return false;
+  for (int i = 0; i < JAM_TRIALS; i++) {
+    if (!lagrangian.solver->interpolate(instance, last, instance->event_state)) return false;
+    double time = last + move_coordinates(instance, beyond_jam[i]);
+    struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_CHANGE);
+    if (!(time > last && time < step->end) || !laws->end_slip(&resolution)) continue;
+    return modes_at(instance, time, instance->event_state, AT_CHANGE, 0) == NULL &&
+           continue_from(instance, step, time, progress);
+  }
+  return false;
+}
+
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                 struct EventProgress *progress) {
   double time;
   size_t indicator;
   if (is_endless(++progress->close_events)) return problem;
   if (pass_contradictions(instance, step, progress)) return NULL;
-  if (!search_for_jump(instance, &time, instance->event_state, &indicator)) return problem;
+  if (!search_for_jump(instance, &time, instance->event_state, &indicator))
+    return pass_jam(instance, step, progress) ? NULL : problem;
   if (time > step->end) time = step->end;
   progress->searched = time;
   return pass_event(instance, step, time, indicator, progress);

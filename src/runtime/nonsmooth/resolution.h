@@ -121,7 +121,7 @@ struct SlidingLaws {
    * slip. Sets *again if it succeeds. Else it logs the paradox, and returns the reason to stop.
    */
   const char *(*resolve_paradox)(struct Resolution *resolution, const struct Paradox *paradox, bool *again);
-  /* Warns at most once an instance that the solution may not be unique. */
+  /* Warns at most once an instance that the solution is not unique, or may not be. */
   void (*report_others)(const struct Resolution *resolution, const struct RestingContacts *resting);
   /* Ends a slip of contacts without forces; false if there is none (end_slip.h). */
   bool (*end_slip)(struct Resolution *resolution);

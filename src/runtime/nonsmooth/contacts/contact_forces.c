@@ -300,13 +300,14 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
   if (slides && (closes || !is_unclear)) resting.solutions = resting_forces_solve(&resting.forces, !closes);
+  /* Of several motions, a short step of the law of impacts chooses one (end_slip.h). */
+  bool is_chosen = resting.solutions == SEVERAL_MOTIONS && !closes && resolution->continued_forces > 0;
   if (!slides && closes && !resting_forces_press(&resting.forces)) {
     log_crushed(resolution, &resting.impulses, sinking);
     problem = crushed;
-  } else if (resting.solutions != ONE_MOTION && resting.solutions != PERHAPS_OTHERS)
-    laws->find_paradox(resolution, &resting, &paradox);
+  } else if (resting.solutions > PERHAPS_OTHERS && !is_chosen) laws->find_paradox(resolution, &resting, &paradox);
   else if (closes) *again = take_solution(resolution, &resting);
-  if (resting.solutions == PERHAPS_OTHERS) laws->report_others(resolution, &resting);
+  if (resting.solutions == PERHAPS_OTHERS || is_chosen) laws->report_others(resolution, &resting);
   free_resting(resolution, &resting);
   return paradox.how_many != NULL ? laws->resolve_paradox(resolution, &paradox, again) : problem;
 }

@@ -55,12 +55,11 @@ static double lost_height(const struct Resolution *resolution, size_t contact) {
 }
 
 /*
- * With the rate u at which the gap opens, and the acceleration -g of the gap, a bounce lasts 2 u / g and has the height
- * u^2 / (2 g).
+ * With the rate u at which the gap opens, and its acceleration -fall, a bounce lasts 2 u / fall and has the height
+ * u^2 / (2 fall).
  */
-bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate) {
+static bool flight_is_lost(const struct Resolution *resolution, size_t contact, double rate, double fall) {
   size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP);
-  double fall = -resolution->value[gap + CONTACT_ACCELERATION];
   double start = resolution->instance->fmu_state->start_time;
   double time_resolution = DBL_EPSILON * fmax(fabs(resolution->time), fabs(resolution->time - start));
   if (rate <= resolution->error_bound[gap + CONTACT_RATE] || 2.0 * rate <= shortest_flight * time_resolution * fall)
@@ -72,10 +71,23 @@ bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double 
   return rate * rate <= 2.0 * fall * fmax(lost, lost_height(resolution, contact));
 }
 
+bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate) {
+  return flight_is_lost(resolution, contact, rate, -contact_value(resolution, contact, CONTACT_ACCELERATION));
+}
+
 bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
   if (contact_is_closed(resolution, contact)) return true;
   return is_touching(resolution, contact) &&
          bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
+}
+
+bool contact_may_rest(const struct Resolution *resolution, size_t contact) {
+  double fastest = 0.0;
+  if (contact_is_closed(resolution, contact)) return true;
+  if (!is_touching(resolution, contact)) return false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    fastest = fmax(fastest, fabs(contact_value(resolution, i, CONTACT_ACCELERATION)));
+  return flight_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE), fastest);
 }
 
 double largest_contact_force(const struct Resolution *resolution) {

@@ -75,6 +75,9 @@ size_t choose_touching(struct Resolution *resolution, enum Part frictions);
 /* True if the contact is closed, or touches and does not open, or its bounce is lost. */
 bool contact_is_at_rest(const struct Resolution *resolution, size_t contact);
 
+/* The same if its gap may have any acceleration that contacts have, as with other modes. */
+bool contact_may_rest(const struct Resolution *resolution, size_t contact);
+
 /*
  * True if a contact that opens at this rate bounces by less than the errors of rounding and of the method, in
  * height or duration.

@@ -75,9 +75,9 @@ static bool rests_on_chosen(const struct Resolution *resolution, const struct Pl
 static void choose_at_rest(struct Resolution *resolution, bool with_contacts) {
   bool may_stop = with_contacts || any_stops(resolution);
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    resolution->part[i] = !with_contacts || !contact_is_at_rest(resolution, i) ? LEFT_OUT
-                          : contact_is_closed(resolution, i)                   ? TAKES_PART
-                                                                               : WAS_OPEN;
+    resolution->part[i] = !with_contacts || !contact_may_rest(resolution, i) ? LEFT_OUT
+                          : contact_is_closed(resolution, i)                 ? TAKES_PART
+                                                                             : WAS_OPEN;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     bool stops = may_stop && state.mode != PLANE_STICKS && plane_is_slow(resolution, &state),
@@ -124,10 +124,15 @@ static bool try_to_stick(struct Resolution *resolution) {
   return plane_evaluate(resolution);
 }
 
-/* Projects out the velocities of frictions at rest, except those that slide, if the motion stops. False if that fails. */
+/*
+ * Projects out the velocities of contacts and frictions at rest, except those that slide, if the motion stops. False if
+ * that fails.
+ */
 static bool bring_to_rest(struct Resolution *resolution, bool stops) {
   bool moves = false;
   resolution_keep_modes(resolution);
+  for (size_t i = 0; i < resolution->switches->contact_count && stops; i++)
+    if (resolution->part[i] != LEFT_OUT) set_contact(resolution, i, true);
   for (size_t i = 0; i < resolution->switches->plane_count && stops; i++) {
     struct PlaneState state = plane_state(resolution, i);
     if (*part_of_plane(resolution, &state) == LEFT_OUT || plane_slides(&state)) continue;
@@ -185,7 +190,7 @@ static void take_contacts(struct RestForces *forces) {
     bool stays = resolution->part[contact] == TAKES_PART && forces->behind[row] <= forces->none;
     if (presses) contact_carry(resolution, contact, forces->force[row]);
     else set_contact(resolution, contact, stays);
-    resolution->forced[contact] = presses || stays ? UNFORCED : FORCED_OPEN;
+    resolution->forced[contact] = presses ? FORCED_CLOSED : stays ? UNFORCED : FORCED_OPEN;
   }
 }
 

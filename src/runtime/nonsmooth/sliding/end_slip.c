@@ -25,8 +25,14 @@
 static const double short_shares[] = {1e-7, 1e-5, 1e-3};
 enum { SHARES = sizeof short_shares / sizeof *short_shares };
 
-/* Finite forces of wedged bodies change rates by up to this multiple of tau a. */
-static const double wedged_forces = 200.0;
+/*
+ * A second step, longer by this factor, tells impulses from finite forces, whose impulses grow by the factor, too. The
+ * growth between both is the geometric mean of the factor and 1.
+ */
+static const double longer_by = 10.0, least_growth = 3.1622776601683795;
+
+/* In units of tau a: larger changes of rates by the impulse of a contact may come from a stress. */
+static const double largest_stress = 10.0;
 
 /* Slips that are ended in an event; more of them have no end. */
 enum { SLIP_LIMIT = 100 };
@@ -35,10 +41,10 @@ enum { SLIP_LIMIT = 100 };
 struct ShortStep {
   struct Resolution *resolution;
   struct ContactImpulses impulses;
-  double *impulse, *work; /* of each row; workspace */
-  double tau, ahead;      /* in s; largest change of a rate by tau a */
-  double slip;            /* the largest before the step */
-  bool has_forces;        /* there are finite forces, kept in guess[] of the event resolution */
+  double *impulse, *longer, *work; /* of each row; those of a longer step; workspace */
+  double share, tau, ahead;        /* of short_shares[]; in s; largest change of a rate by tau a */
+  double slip;                     /* the largest before the step */
+  bool has_forces;                 /* there are finite forces, kept in guess[] of the event resolution */
 };
 
 /* Opens the contacts that touch, and lets all frictions slide. */
@@ -74,6 +80,7 @@ static void fill_rates_ahead(struct ShortStep *step, double share) {
     if (!is_contact) step->slip = fmax(step->slip, fabs(impulses->rate[row]));
     if (has_stopped(step, row)) impulses->rate[row] = 0.0;
   }
+  step->share = share;
   step->tau = largest > 0.0 ? share * step->slip / largest : 0.0;
   for (size_t row = 0; row < impulses->count; row++) impulses->rate[row] += step->tau * acceleration[row];
   step->ahead = step->tau * largest;
@@ -92,16 +99,52 @@ static double own_change(const struct ShortStep *step, size_t row) {
   return step->impulses.delassus[row * (step->impulses.count + 1)] * step->impulse[row];
 }
 
+/* Returns the largest change of a rate by impulses. */
+static double largest_change(const struct ContactImpulses *impulses, const double *impulse) {
+  double largest = 0.0;
+  for (size_t row = 0; row < impulses->count; row++) {
+    double change = 0.0;
+    for (size_t i = 0; i < impulses->count; i++) change += impulses->delassus[row * impulses->count + i] * impulse[i];
+    largest = fmax(largest, fabs(change));
+  }
+  return largest;
+}
+
+/* Finds the impulses of a step that is longer by longer_by. False if there are none. */
+static bool find_longer(struct ShortStep *step) {
+  const struct Resolution *resolution = step->resolution;
+  struct ContactImpulses *impulses = &step->impulses;
+  double share = step->share;
+  fill_rates_ahead(step, longer_by * share);
+  memcpy(step->longer, step->impulse, impulses->count * sizeof *step->impulse);
+  bool is_found = cone_impulses_continue(resolution, impulses, impulses->rate, step->longer) ||
+                  cone_impulses_find(resolution, impulses, impulses->rate, step->longer);
+  fill_rates_ahead(step, share);
+  return is_found;
+}
+
+/* True if several contacts have impulses that do not grow with tau: one acts on further contacts, or there are more. */
+static bool are_of_several(const struct ShortStep *step) {
+  const struct ContactImpulses *impulses = &step->impulses;
+  bool acts = false;
+  size_t count = 0;
+  for (size_t row = 0; row < impulses->contact_count; row++) {
+    if (own_change(step, row) <= step->ahead || step->longer[row] > least_growth * step->impulse[row]) continue;
+    acts |= acts_on_others(impulses, row);
+    count++;
+  }
+  return acts || count > 1;
+}
+
 /*
- * True if some impulse is larger than that of finite forces, and acts on further contacts. The former changes rates like
- * the slip that it ends, the latter like tau a. The limit is the geometric mean of both, but smaller for small slips.
+ * True if the impulses of several contacts change rates by more than finite forces do, whose impulses grow with tau.
+ * Impulses that only stress bodies between contacts change none.
  */
-static bool is_impulsive(const struct ShortStep *step) {
-  double limit = fmin(sqrt(step->ahead * step->slip), wedged_forces * step->ahead);
-  bool any = false;
-  for (size_t row = 0; row < step->impulses.contact_count; row++)
-    any |= own_change(step, row) > limit && acts_on_others(&step->impulses, row);
-  return any;
+static bool is_impulsive(struct ShortStep *step) {
+  if (!find_longer(step)) return false;
+  double change = largest_change(&step->impulses, step->impulse);
+  if (!(change > step->ahead) || largest_change(&step->impulses, step->longer) > least_growth * change) return false;
+  return are_of_several(step);
 }
 
 /*
@@ -131,6 +174,20 @@ static void continue_impulses(struct ShortStep *step, double share) {
   fill_rates_ahead(step, share);
 }
 
+/*
+ * Where bodies may be stressed between contacts, impulses of any size are found. Takes those that small ones lead to, if
+ * there are any.
+ */
+static void take_least_stress(struct ShortStep *step) {
+  struct ContactImpulses *impulses = &step->impulses;
+  double largest = 0.0;
+  for (size_t row = 0; row < impulses->contact_count; row++) largest = fmax(largest, own_change(step, row));
+  if (!(largest > largest_stress * step->ahead)) return;
+  for (size_t row = 0; row < impulses->count; row++) step->longer[row] = step->ahead / largest * step->impulse[row];
+  bool is_less = cone_impulses_continue(step->resolution, impulses, impulses->rate, step->longer);
+  if (is_less) memcpy(step->impulse, step->longer, impulses->count * sizeof *step->impulse);
+}
+
 /* Finds the impulses of a step, with the modes of release_chosen(). False if there are none. */
 static bool find_impulses_of_step(struct ShortStep *step) {
   bool is_found = false;
@@ -140,6 +197,7 @@ static bool find_impulses_of_step(struct ShortStep *step) {
         step->ahead > 0.0 && cone_impulses_find(step->resolution, &step->impulses, step->impulses.rate, step->impulse);
     if (is_found && i > 0) continue_impulses(step, short_shares[i]);
   }
+  if (is_found) take_least_stress(step);
   return is_found;
 }
 
@@ -160,12 +218,13 @@ static void keep_forces(struct ShortStep *step) {
 static bool take_step(struct ShortStep *step) {
   struct Resolution *resolution = step->resolution;
   size_t count = step->impulses.count;
-  step->impulse = scratch_take(resolution->instance, SCRATCH_IMPACT, 2 * count * sizeof *step->impulse);
+  step->impulse = scratch_take(resolution->instance, SCRATCH_IMPACT, 3 * count * sizeof *step->impulse);
   if (step->impulse == NULL) {
     solver_is_out_of_memory(resolution->instance);
     return false;
   }
   step->work = step->impulse + count;
+  step->longer = step->work + count;
   bool is_found = find_impulses_of_step(step), is_impact = is_found && is_impulsive(step);
   if (is_found && !is_impact) keep_forces(step);
   bool is_done = is_impact && !gains_energy(&step->impulses, step->impulse);
@@ -195,7 +254,7 @@ static bool begin_anew(struct Resolution *resolution) {
 static void mark_slow(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (resolution->part[i] != LEFT_OUT && contact_is_at_rest(resolution, i)) resolution->part[i] = IS_SLOW;
+    if (resolution->part[i] != LEFT_OUT && contact_may_rest(resolution, i)) resolution->part[i] = IS_SLOW;
   for (size_t i = 0; i < switches->friction_count; i++)
     if (is_in_plane(switches, i) && switches->friction_laws->is_slow(resolution, plane_of(switches, i)))
       *part_of_friction(resolution, i) = IS_SLOW;

@@ -62,13 +62,15 @@ static const char *resolve_paradox(struct Resolution *resolution, const struct P
 static void report_others(const struct Resolution *resolution, const struct RestingContacts *resting) {
   const struct ContactImpulses *impulses = &resting->impulses;
   size_t contact = find_locked(resting);
+  const char *why = resting->solutions == SEVERAL_MOTIONS
+                        ? "have more than one solution; the motion is that which an impact of small rates leads to"
+                        : "may have another solution: too many contacts are coupled to exclude it";
   if (resolution->instance->reported_other_forces) return;
   resolution->instance->reported_other_forces = true;
   log_message(resolution->instance, STATUS_WARNING,
-              "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', may have another "
-              "solution: too many contacts are coupled to exclude it",
-              resolution->time, resolution->switches->contacts[impulses->member[contact]].name,
-              locking_friction(resolution, impulses, contact));
+              "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', %s", resolution->time,
+              resolution->switches->contacts[impulses->member[contact]].name,
+              locking_friction(resolution, impulses, contact), why);
 }
 
 static bool any_begins_to_slide(const struct Resolution *resolution) {
