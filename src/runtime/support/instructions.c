@@ -104,7 +104,7 @@ static inline uint32_t space_of_operand(uint32_t spaces, int number) {
 }
 
 /* Sets count numbers to one. Returns the code behind the operands of a run. */
-static const int32_t *fill(Real *numbers, Real value, uint32_t count, const int32_t *code) {
+static const int32_t *fill_equal(Real *numbers, Real value, uint32_t count, const int32_t *code) {
   for (uint32_t i = 0; i < count; i++) numbers[i] = value;
   return code + 4;
 }
@@ -122,7 +122,7 @@ int instructions_run(const struct Frame *frame, const int32_t *code) {
     switch (opcode) {
     case COPY:
       if (is_spaced && code[1] == 1 && code[3] == 0) { /* elements of K that are 0 before the factorization */
-        code = fill(r + code[0], a[code[2]], count, code);
+        code = fill_equal(r + code[0], a[code[2]], count, code);
         break;
       }
       EACH(2, R = A);
