@@ -116,9 +116,11 @@ struct SlidingLaws {
   /* Finds what a message says if there is no solution, or not only one. */
   void (*find_paradox)(const struct Resolution *resolution, const struct RestingContacts *resting,
                        struct Paradox *paradox);
+  /* Finds the forces of frictions in planes at rest too, or ends the slip. False if that fails. */
+  bool (*find_all_forces)(struct Resolution *resolution);
   /*
-   * Finds the forces of frictions in planes at rest too, without which those of the contacts do not exist, or ends the
-   * slip. Sets *again if it succeeds. Else it logs the paradox, and returns the reason to stop.
+   * Does the same where forces of the contacts alone do not exist; sets *again if it succeeds. Else it logs the paradox,
+   * and returns the reason to stop.
    */
   const char *(*resolve_paradox)(struct Resolution *resolution, const struct Paradox *paradox, bool *again);
   /* Warns at most once an instance that the solution is not unique, or may not be. */

@@ -291,7 +291,7 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   struct RestingContacts resting;
   struct Paradox paradox = {.how_many = NULL};
   *again = false;
-  const char *problem = NULL;
+  const char *problem;
   bool slides = choose_resting(resolution);
   if (!slides && !any_comes_back(resolution)) return NULL;
   bool is_unclear = slides && laws->any_begins(resolution);
@@ -302,12 +302,13 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   if (slides && (closes || !is_unclear)) resting.solutions = resting_forces_solve(&resting.forces, !closes);
   /* Of several motions, a short step of the law of impacts chooses one (end_slip.h). */
   bool is_chosen = resting.solutions == SEVERAL_MOTIONS && !closes && resolution->continued_forces > 0;
-  if (!slides && closes && !resting_forces_press(&resting.forces)) {
-    log_crushed(resolution, &resting.impulses, sinking);
-    problem = crushed;
-  } else if (resting.solutions > PERHAPS_OTHERS && !is_chosen) laws->find_paradox(resolution, &resting, &paradox);
-  else if (closes) *again = take_solution(resolution, &resting);
+  bool is_crushed = !slides && closes && !resting_forces_press(&resting.forces);
+  if (resting.solutions > PERHAPS_OTHERS && !is_chosen) laws->find_paradox(resolution, &resting, &paradox);
+  else if (closes && !is_crushed) *again = take_solution(resolution, &resting);
   if (resting.solutions == PERHAPS_OTHERS || is_chosen) laws->report_others(resolution, &resting);
   free_resting(resolution, &resting);
-  return paradox.how_many != NULL ? laws->resolve_paradox(resolution, &paradox, again) : problem;
+  if (paradox.how_many != NULL) return laws->resolve_paradox(resolution, &paradox, again);
+  /* Frictions that stick may close a contact: they slip. */
+  *again |= is_crushed && laws != NULL && laws->find_all_forces(resolution);
+  return is_crushed && !*again ? contact_forces_report_crushed(resolution, sinking) : NULL;
 }

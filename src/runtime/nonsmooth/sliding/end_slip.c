@@ -34,6 +34,9 @@ static const double longer_by = 10.0, least_growth = 3.1622776601683795;
 /* In units of tau a: larger changes of rates by the impulse of a contact may come from a stress. */
 static const double largest_stress = 10.0;
 
+/* Relative change of the diagonal elements of W by compliant contacts. */
+static const double compliance = 1e-6;
+
 /* Slips that are ended in an event; more of them have no end. */
 enum { SLIP_LIMIT = 100 };
 
@@ -174,18 +177,33 @@ static void continue_impulses(struct ShortStep *step, double share) {
   fill_rates_ahead(step, share);
 }
 
+/* Returns the largest change of a contact's rate by its own impulse. */
+static double largest_own_change(const struct ShortStep *step, const double *impulse) {
+  const struct ContactImpulses *impulses = &step->impulses;
+  double largest = 0.0;
+  for (size_t row = 0; row < impulses->contact_count; row++)
+    largest = fmax(largest, impulses->delassus[row * (impulses->count + 1)] * impulse[row]);
+  return largest;
+}
+
 /*
- * Where bodies may be stressed between contacts, impulses of any size are found. Takes those that small ones lead to, if
- * there are any.
+ * Where bodies may be stressed between contacts, impulses of any size are found. With compliant contacts they are small.
+ * Takes those to which these lead, if there are any.
  */
 static void take_least_stress(struct ShortStep *step) {
+  const struct Resolution *resolution = step->resolution;
   struct ContactImpulses *impulses = &step->impulses;
-  double largest = 0.0;
-  for (size_t row = 0; row < impulses->contact_count; row++) largest = fmax(largest, own_change(step, row));
+  double *diagonal = step->work, largest = largest_own_change(step, step->impulse);
   if (!(largest > largest_stress * step->ahead)) return;
-  for (size_t row = 0; row < impulses->count; row++) step->longer[row] = step->ahead / largest * step->impulse[row];
-  bool is_less = cone_impulses_continue(step->resolution, impulses, impulses->rate, step->longer);
-  if (is_less) memcpy(step->impulse, step->longer, impulses->count * sizeof *step->impulse);
+  for (size_t row = 0; row < impulses->count; row++) {
+    diagonal[row] = impulses->delassus[row * (impulses->count + 1)];
+    impulses->delassus[row * (impulses->count + 1)] *= 1.0 + compliance;
+  }
+  bool is_found = cone_impulses_find(resolution, impulses, impulses->rate, step->longer);
+  for (size_t row = 0; row < impulses->count; row++) impulses->delassus[row * (impulses->count + 1)] = diagonal[row];
+  is_found = is_found && cone_impulses_continue(resolution, impulses, impulses->rate, step->longer);
+  if (is_found && largest_own_change(step, step->longer) < largest)
+    memcpy(step->impulse, step->longer, impulses->count * sizeof *step->impulse);
 }
 
 /* Finds the impulses of a step, with the modes of release_chosen(). False if there are none. */
@@ -263,7 +281,11 @@ static void mark_slow(struct Resolution *resolution) {
 /* Finds the modes from the forces of a step. False if there are none. */
 static bool continue_forces(struct Resolution *resolution, bool stops) {
   const struct FrictionLaws *laws = resolution->switches->friction_laws;
-  if (laws->continue_together == NULL || !resolution_evaluate(resolution)) return false;
+  if (laws->continue_together == NULL) return false;
+  if (!resolution_evaluate(resolution)) {
+    release_chosen(resolution);
+    if (!resolution_evaluate(resolution)) return false;
+  }
   if (!laws->continue_together(resolution, stops)) return false;
   set_flips(resolution, 1.0);
   return true;

@@ -47,10 +47,14 @@ static void find_paradox(const struct Resolution *resolution, const struct Resti
                               .how_many = numbers_of_solutions[resting->solutions]};
 }
 
-static const char *resolve_paradox(struct Resolution *resolution, const struct Paradox *paradox, bool *again) {
+static bool find_all_forces(struct Resolution *resolution) {
   const struct FrictionLaws *laws = resolution->switches->friction_laws;
-  *again = laws->resolve_together != NULL && laws->resolve_together(resolution);
-  if (!*again) *again = resolution_ends_slip(resolution);
+  bool is_found = laws->resolve_together != NULL && laws->resolve_together(resolution);
+  return is_found || resolution_ends_slip(resolution);
+}
+
+static const char *resolve_paradox(struct Resolution *resolution, const struct Paradox *paradox, bool *again) {
+  *again = find_all_forces(resolution);
   if (*again) return NULL;
   log_message(resolution->instance, resolution_status(resolution),
               "time %g: the force of the contact '%s' has %s solution, as the friction '%s' slides and presses it "
@@ -131,6 +135,7 @@ static bool explain_jam_of_contact(struct Resolution *resolution) {
 
 const struct SlidingLaws sliding_laws = {.any_begins = any_begins_to_slide,
                                          .find_paradox = find_paradox,
+                                         .find_all_forces = find_all_forces,
                                          .resolve_paradox = resolve_paradox,
                                          .report_others = report_others,
                                          .end_slip = end_slip,
