@@ -4,6 +4,8 @@
  * have impulses. As tau vanishes they tend to finite ones, which end the slip. (D. E. Stewart: Rigid-body dynamics with
  * friction and impact, SIAM Review 42, 2000, section 3.) If they tend to 0 there are forces p / tau, from which
  * plane_rests.c finds the modes. A second step counts small rates as 0: of slow frictions, and of lost bounces.
+ *
+ * Impulses that only stress bodies between contacts may have any size. A small compliance makes them small.
  */
 #include "nonsmooth/sliding/end_slip.h"
 
@@ -98,8 +100,16 @@ static bool acts_on_others(const struct ContactImpulses *impulses, size_t row) {
 }
 
 /* Returns the change of a contact's rate by its own impulse. */
-static double own_change(const struct ShortStep *step, size_t row) {
-  return step->impulses.delassus[row * (step->impulses.count + 1)] * step->impulse[row];
+static double own_change(const struct ContactImpulses *impulses, const double *impulse, size_t row) {
+  return impulses->delassus[row * (impulses->count + 1)] * impulse[row];
+}
+
+/* Returns the contact with the largest such change. */
+static size_t find_most(const struct ContactImpulses *impulses, const double *impulse) {
+  size_t most = 0;
+  for (size_t row = 1; row < impulses->contact_count; row++)
+    if (own_change(impulses, impulse, row) > own_change(impulses, impulse, most)) most = row;
+  return most;
 }
 
 /* Returns the largest change of a rate by impulses. */
@@ -132,7 +142,8 @@ static bool are_of_several(const struct ShortStep *step) {
   bool acts = false;
   size_t count = 0;
   for (size_t row = 0; row < impulses->contact_count; row++) {
-    if (own_change(step, row) <= step->ahead || step->longer[row] > least_growth * step->impulse[row]) continue;
+    bool is_small = own_change(impulses, step->impulse, row) <= step->ahead;
+    if (is_small || step->longer[row] > least_growth * step->impulse[row]) continue;
     acts |= acts_on_others(impulses, row);
     count++;
   }
@@ -156,10 +167,8 @@ static bool is_impulsive(struct ShortStep *step) {
  */
 static void report_ended_slip(const struct ShortStep *step) {
   const struct Resolution *resolution = step->resolution;
-  size_t most = 0;
   if (resolution->instance->reported_ended_slip || step->slip <= tolerances_of(resolution).rest) return;
-  for (size_t row = 1; row < step->impulses.contact_count; row++)
-    if (own_change(step, row) > own_change(step, most)) most = row;
+  size_t most = find_most(&step->impulses, step->impulse);
   resolution->instance->reported_ended_slip = true;
   log_message(resolution->instance, STATUS_WARNING,
               "time %g: the forces of contacts that slide, such as '%s', have no solution (Painleve's paradox); an "
@@ -177,15 +186,6 @@ static void continue_impulses(struct ShortStep *step, double share) {
   fill_rates_ahead(step, share);
 }
 
-/* Returns the largest change of a contact's rate by its own impulse. */
-static double largest_own_change(const struct ShortStep *step, const double *impulse) {
-  const struct ContactImpulses *impulses = &step->impulses;
-  double largest = 0.0;
-  for (size_t row = 0; row < impulses->contact_count; row++)
-    largest = fmax(largest, impulses->delassus[row * (impulses->count + 1)] * impulse[row]);
-  return largest;
-}
-
 /*
  * Where bodies may be stressed between contacts, impulses of any size are found. With compliant contacts they are small.
  * Takes those to which these lead, if there are any.
@@ -193,7 +193,9 @@ static double largest_own_change(const struct ShortStep *step, const double *imp
 static void take_least_stress(struct ShortStep *step) {
   const struct Resolution *resolution = step->resolution;
   struct ContactImpulses *impulses = &step->impulses;
-  double *diagonal = step->work, largest = largest_own_change(step, step->impulse);
+  double *diagonal = step->work;
+  size_t most = find_most(impulses, step->impulse);
+  double largest = own_change(impulses, step->impulse, most);
   if (!(largest > largest_stress * step->ahead)) return;
   for (size_t row = 0; row < impulses->count; row++) {
     diagonal[row] = impulses->delassus[row * (impulses->count + 1)];
@@ -202,7 +204,7 @@ static void take_least_stress(struct ShortStep *step) {
   bool is_found = cone_impulses_find(resolution, impulses, impulses->rate, step->longer);
   for (size_t row = 0; row < impulses->count; row++) impulses->delassus[row * (impulses->count + 1)] = diagonal[row];
   is_found = is_found && cone_impulses_continue(resolution, impulses, impulses->rate, step->longer);
-  if (is_found && largest_own_change(step, step->longer) < largest)
+  if (is_found && own_change(impulses, step->longer, find_most(impulses, step->longer)) < largest)
     memcpy(step->impulse, step->longer, impulses->count * sizeof *step->impulse);
 }
 
