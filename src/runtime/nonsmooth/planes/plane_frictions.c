@@ -140,7 +140,8 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
     if (state.mode == PLANE_IS_FREE) continue;
     if (state.is_given) *again |= follow_given(resolution, &state);
     else if (plane_is_stopping(resolution, &state) || plane_is_overcome(resolution, &state) ||
-             slips_otherwise(resolution, &state) || plane_is_unheld(resolution, &state))
+             slips_otherwise(resolution, &state) || plane_is_unheld(resolution, &state) ||
+             plane_is_lost(resolution, &state))
       resolves = true;
     else *again |= change_slide(resolution, &state);
   }

@@ -162,6 +162,13 @@ bool plane_is_unheld(const struct Resolution *resolution, const struct PlaneStat
          has_rate(resolution, state, tolerances_of(resolution).acceleration);
 }
 
+bool plane_is_lost(const struct Resolution *resolution, const struct PlaneState *state) {
+  const struct FrictionMetadata *frictions = &resolution->switches->frictions[state->metadata->along];
+  const double *forces = resolution_accelerations(resolution) + lagrangian.coordinate_count;
+  double force = hypot(forces[frictions[0].constraint], forces[frictions[1].constraint]);
+  return state->mode == PLANE_STICKS && force > hopeless * largest_stiction(resolution);
+}
+
 /* True if the velocity of a friction that slid changes although it sticks. */
 static bool continues(const struct Resolution *resolution, const struct PlaneState *state) {
   return *part_of_plane(resolution, state) == IS_SLOW && has_rate(resolution, state, 0.0);

@@ -9,6 +9,12 @@ bool plane_is_stopping(const struct Resolution *resolution, const struct PlaneSt
 /* True if a friction sticks, and its velocity changes nevertheless: its constraint contradicts others. */
 bool plane_is_unheld(const struct Resolution *resolution, const struct PlaneState *state);
 
+/*
+ * True if a friction that sticks has a force far beyond all limits, where constraints nearly depend on each other. The
+ * rounding error bound of such a force is as large, and hides that it is overcome.
+ */
+bool plane_is_lost(const struct Resolution *resolution, const struct PlaneState *state);
+
 /* True if a sticking friction needs more than its stiction, or was found to reach it. */
 bool plane_is_overcome(const struct Resolution *resolution, const struct PlaneState *state);
 
