@@ -156,7 +156,7 @@ struct BranchMetadata {
   long line;            /* 0 if unknown */
   bool is_last_sign;    /* of an event's expression: at 0 the mode keeps its last nonzero sign */
   bool holds_energy;    /* the state determines it, and energies depend on it: they must not jump there */
-  bool is_of_forces;    /* it occurs in forces, rates of states and outputs alone, see branches_pass_kink() */
+  bool is_of_forces;    /* it occurs in forces and outputs alone, see branches_pass_kink() */
 };
 
 /* A contact: the indices of its mode among the parameters, and of its constraint. */

@@ -85,13 +85,14 @@ static void find_branches(const struct Model *model, struct NodeList *roots, str
   }
 }
 
-/* Finds the branches whose modes occur in no energy, law or indicator of an event. */
+/* Finds the branches whose modes occur in no energy, rate of a state, law or indicator of an event. */
 static void find_branches_of_forces(const struct Model *model, const struct Equations *equations,
                                     struct SwitchingExpressions *switching) {
   const struct Switches *switches = &model->switches;
   struct NodeList others = {0};
   append_node(&others, equations->kinetic);
   append_node(&others, equations->potential);
+  append_nodes(&others, equations->rates.nodes, equations->rates.count);
   append_laws(model, &others);
   for (size_t i = 0; i < switches->friction_count; i++) {
     append_node(&others, switches->frictions[i].sliding);

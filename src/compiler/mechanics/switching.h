@@ -7,7 +7,7 @@
 struct SwitchingExpressions {
   const struct Branch **branches; /* those on which the motion depends */
   bool *holds_energy;             /* of each branch: the state determines its mode, and energies depend on it */
-  bool *is_of_forces;             /* of each branch: its mode occurs in forces, rates of states and outputs alone */
+  bool *is_of_forces;             /* of each branch: its mode occurs in forces and outputs alone */
   size_t branch_count, assignment_count;
   size_t energy_count; /* kinetic, potential, and momenta if modes affect the kinetic one; 0 without holds_energy */
   /*

@@ -465,7 +465,8 @@ static bool pass_jam(struct Instance *instance, const struct CommunicationStep *
     if (!lagrangian.solver->interpolate(instance, last, instance->event_state)) return false;
     double time = last + move_coordinates(instance, beyond_jam[i]);
     struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_CHANGE);
-    if (!(time > last && time < step->end) || !laws->end_slip(&resolution)) continue;
+    if (!(time > last && time < step->end) || !resolution_evaluate(&resolution)) continue;
+    if (!laws->end_slip(&resolution)) continue;
     return modes_at(instance, time, instance->event_state, AT_CHANGE, 0) == NULL &&
            continue_from(instance, step, time, progress);
   }
