@@ -3,7 +3,7 @@
  * accelerations without contact forces. For the rates u + tau a, after a short time tau, the law of cone_search.c does
  * have impulses. As tau vanishes they tend to finite ones, which end the slip. (D. E. Stewart: Rigid-body dynamics with
  * friction and impact, SIAM Review 42, 2000, section 3.) If they tend to 0 there are forces p / tau, from which
- * plane_rests.c finds the modes. A second step counts small rates as 0: of slow frictions, and of lost bounces.
+ * plane_rests.c finds the modes, or which set those of frictions along lines. A second step counts small rates as 0: of slow frictions, and of lost bounces.
  *
  * Impulses that only stress bodies between contacts may have any size. A small compliance makes them small.
  */
@@ -39,8 +39,11 @@ static const double largest_stress = 10.0;
 /* Relative change of the diagonal elements of W by compliant contacts. */
 static const double compliance = 1e-6;
 
-/* Slips that are ended in an event; more of them have no end. */
-enum { SLIP_LIMIT = 100 };
+/* Relative to the limit of a friction, or to the largest force: smaller differences, or forces, are rounding errors. */
+static const double at_limit = 1e-9;
+
+/* Slips that are ended in an event, and times that frictions along lines take the modes of a step; more have no end. */
+enum { SLIP_LIMIT = 100, LINE_LIMIT = 20 };
 
 /* A short step. */
 struct ShortStep {
@@ -221,7 +224,17 @@ static bool find_impulses_of_step(struct ShortStep *step) {
   return is_found;
 }
 
-/* Keeps the forces that have the impulses of a step. */
+/* Returns the mode of a friction along a line in a step, given its row: 0 if it sticks, else the sign of its velocity. */
+static double mode_in_step(const struct ShortStep *step, size_t row) {
+  const struct ContactImpulses *impulses = &step->impulses;
+  size_t contacts = impulses->contact_count;
+  double limit = 0.0, impulse = step->impulse[row], sign = impulse != 0.0 ? -impulse : impulses->rate[row];
+  for (size_t i = 0; i < contacts; i++)
+    limit += impulses->coefficient[(row - contacts) * contacts + i] * step->impulse[i];
+  return fabs(impulse) < (1.0 - at_limit) * limit ? 0.0 : copysign(1.0, sign);
+}
+
+/* Keeps the forces that have the impulses of a step; of frictions along lines, if there are no others, the modes. */
 static void keep_forces(struct ShortStep *step) {
   struct Resolution *resolution = step->resolution;
   const struct ContactImpulses *impulses = &step->impulses;
@@ -229,7 +242,9 @@ static void keep_forces(struct ShortStep *step) {
   memset(resolution->guess, 0, (contacts + resolution->switches->friction_count) * sizeof *resolution->guess);
   for (size_t row = 0; row < impulses->count; row++) {
     size_t member = impulses->member[row];
-    resolution->guess[row < impulses->contact_count ? member : contacts + member] = step->impulse[row] / step->tau;
+    bool is_line = row >= impulses->contact_count && resolution->switches->plane_count == 0;
+    resolution->guess[row < impulses->contact_count ? member : contacts + member] =
+        is_line ? mode_in_step(step, row) : step->impulse[row] / step->tau;
   }
   step->has_forces = true;
 }
@@ -280,10 +295,28 @@ static void mark_slow(struct Resolution *resolution) {
       *part_of_friction(resolution, i) = IS_SLOW;
 }
 
+/* Sets the modes of contacts and of frictions along lines to those of a step. False after many steps in the event. */
+static bool take_lines(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t contacts = switches->contact_count;
+  double largest = 0.0;
+  if (++resolution->continued_forces > LINE_LIMIT) return false;
+  for (size_t i = 0; i < contacts; i++) largest = fmax(largest, resolution->guess[i]);
+  for (size_t i = 0; i < contacts; i++) {
+    if (resolution->part[i] == LEFT_OUT) continue;
+    bool presses = resolution->guess[i] > at_limit * largest;
+    set_contact(resolution, i, presses);
+    resolution->forced[i] = presses ? FORCED_CLOSED : FORCED_OPEN;
+    for (size_t k = 0; k < switches->friction_count; k++)
+      if (rests_on(switches, k, i)) set_friction(resolution, k, resolution->guess[contacts + k]);
+  }
+  return true;
+}
+
 /* Finds the modes from the forces of a step. False if there are none. */
 static bool continue_forces(struct Resolution *resolution, bool stops) {
   const struct FrictionLaws *laws = resolution->switches->friction_laws;
-  if (laws->continue_together == NULL) return false;
+  if (resolution->switches->plane_count == 0) return take_lines(resolution);
   if (!resolution_evaluate(resolution)) {
     release_chosen(resolution);
     if (!resolution_evaluate(resolution)) return false;
