@@ -1,7 +1,7 @@
 """
 Two disks on the ground that touch: one rolls, the other slides and pushes against it. Once they no longer slip on each other, the first one climbs.
 
-With much friction, the combination of modes in which it stays down has forces below 0, or none: contacts open and frictions stick at the same time.
+With much friction, the modes in which it stays down have forces below 0, or none. Contacts open and frictions stick at the same time.
 """
 
 import pytest

@@ -2,8 +2,10 @@
  * Impacts without collision. Contacts at rest that slide may have no forces (Painleve's paradox). Let a be the
  * accelerations without contact forces. For the rates u + tau a, after a short time tau, the law of cone_search.c does
  * have impulses. As tau vanishes they tend to finite ones, which end the slip. (D. E. Stewart: Rigid-body dynamics with
- * friction and impact, SIAM Review 42, 2000, section 3.) If they tend to 0 there are forces p / tau, from which
- * plane_rests.c finds the modes, or which set those of frictions along lines. A second step counts small rates as 0: of slow frictions, and of lost bounces.
+ * friction and impact, SIAM Review 42, 2000, section 3.)
+ *
+ * If they tend to 0 there are forces p / tau. From these plane_rests.c finds the modes; those of frictions along lines
+ * alone follow at once. A second step counts small rates as 0: of slow frictions, and of lost bounces.
  *
  * Impulses that only stress bodies between contacts may have any size. A small compliance makes them small.
  */
