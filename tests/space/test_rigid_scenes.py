@@ -293,7 +293,7 @@ def test_box_without_margin(name, draw, tolerance):
 def test_feet_that_jam_each_other():
     """
     The forces of two feet grow without bound, each pressed by the other's friction, and the solver cannot reach that time. An impulse ends the slip,
-    and the table goes on without a gain of energy.
+    and the simulation continues. The energy does not grow.
     """
     values = {"mu": 0.8303383096343177, "rate": 8.012277556112187, "dir": 2.3518396878919012, "off": 0.29623349705594}
     run_pushed("TableOnFour", values, 6.0, 0.12)

@@ -134,7 +134,8 @@ static double expand_sampled(const struct SearchInterval *interval, const double
   chebyshev_powers(c, 0.5 * (interval->to - interval->from), series);
   double rounding = 64.0 * DBL_EPSILON * fabs(c[0]), tail = chebyshev_tail(c);
   double allowed = resolved_motion * chebyshev_range(c) + fmax(rounding, error_bound);
-  return tail <= allowed ? (tail > 0.0 ? tail / allowed : 0.0) : isfinite(tail) ? tail / allowed : INFINITY;
+  if (tail == 0.0) return 0.0;
+  return isfinite(tail) ? tail / allowed : INFINITY;
 }
 
 /* Expands the states. Returns the largest number of expand_sampled(). */

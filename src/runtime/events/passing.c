@@ -131,13 +131,13 @@ static bool find_next(struct Instance *instance, double end, struct EventProgres
                       size_t *indicator) {
   double look_ahead = look_ahead_share * progress->distance, growth = look_ahead_growth;
   while (progress->searched < end) {
-    double near = look_ahead > 0.0 ? fmin(end, progress->searched + look_ahead) : end, longest = near;
+    double near = look_ahead > 0.0 ? fmin(end, progress->searched + look_ahead) : end, requested = near;
     *time = NAN;
     struct IntervalSamples samples;
     bool is_sure = search_interval_shorten(instance, progress->searched, &near, &samples);
     if (!is_sure && ++progress->unsure > UNSURE_LIMIT) return true;
     if (search_for_event(instance, progress->searched, near, &samples, TO_ROUNDING, time, indicator)) return true;
-    if (near < longest) growth = look_ahead_share;
+    if (near < requested) growth = look_ahead_share;
     look_ahead = growth * (near - progress->searched);
     progress->searched = near;
     progress->close_events = 0;

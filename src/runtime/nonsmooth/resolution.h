@@ -39,9 +39,9 @@ struct Resolution {
   double *first_mode;          /* of each contact, then each friction: at the start of the event */
   double *struck;              /* contacts: 1 if an impulse acted in the event, else 0 */
   enum Part *part;             /* of each contact, then each friction */
-  double *guess;               /* of each contact, then each friction: its force in a short step, by end_slip.c */
-  double *start_gap;           /* of each contact: the most negative one that rounded start values gave; else 0 */
-  double *moves;               /* of each resting velocity: its mode by find_resting */
+  double *guess;     /* of contacts, then frictions: force in a short step; mode, if no friction is in a plane */
+  double *start_gap; /* of each contact: the most negative one that rounded start values gave; else 0 */
+  double *moves;     /* of each resting velocity: its mode by find_resting */
   double *probe_input, *probe_acceleration, *probe_sums; /* workspace of find_resting */
   double *ball_distance;                                 /* workspace of explain_ball() */
   double *acceleration;                                  /* accelerations, then constraint forces */
@@ -66,7 +66,7 @@ struct Resolution {
   bool has_stuck_again;                   /* frictions at their limits at rest have stuck again */
   bool has_searched_jam;                  /* all modes of frictions at rest were tried */
   bool has_found_forces;                  /* modes were set from a solution for all forces at rest */
-  int continued_forces;                   /* the same from that of a short step */
+  int continued_forces;                   /* trials of those of a short step, end_slip.c */
   int impacts, plastic_impacts, lifts;    /* plastic_impacts: those of all contacts that touch */
   int ended_slips;                        /* by impulses, end_slip.c */
   double lost_speed;                      /* largest rate of a gap at which a contact came to rest in the event */

@@ -256,11 +256,11 @@ static bool lifts(const struct Resolution *resolution) {
          value[CONTACT_RATE] >= -error_bound[CONTACT_RATE];
 }
 
-static const char *note_kink(struct Instance *instance, bool *changed) {
+/* Counts an event that branches_pass_kink() has passed. */
+static void count_kink(struct Instance *instance, bool *changed) {
   instance->fmu_state->statistics[STATISTIC_EVENTS]++;
   instance->lifts = false;
   *changed = true;
-  return NULL;
 }
 
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
@@ -271,7 +271,10 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
                             mode_of(&resolution, resolution.switches->branches[indicator].mode) == 0.0;
   resolution.is_beside_departure = time == instance->departure_time;
   if (resolution.is_departure) instance->departure_time = time;
-  if (branches_pass_kink(&resolution)) return note_kink(instance, changed);
+  if (branches_pass_kink(&resolution)) {
+    count_kink(instance, changed);
+    return NULL;
+  }
   for (size_t i = 0; i < switching_count(resolution.switches); i++)
     resolution.first_mode[i] = switching_mode(&resolution, i);
   const char *problem = begin_resolution(&resolution);

@@ -103,10 +103,9 @@ static inline uint32_t space_of_operand(uint32_t spaces, int number) {
   return spaces >> number * SPACE_BITS & SPACE_MASK;
 }
 
-/* Sets count numbers to one. Returns the code behind the operands of a run. */
-static const int32_t *fill_equal(Real *numbers, Real value, uint32_t count, const int32_t *code) {
+/* Sets count numbers to the same value. */
+static void fill_equal(Real *numbers, Real value, uint32_t count) {
   for (uint32_t i = 0; i < count; i++) numbers[i] = value;
-  return code + 4;
 }
 
 int instructions_run(const struct Frame *frame, const int32_t *code) {
@@ -122,7 +121,8 @@ int instructions_run(const struct Frame *frame, const int32_t *code) {
     switch (opcode) {
     case COPY:
       if (is_spaced && code[1] == 1 && code[3] == 0) { /* elements of K that are 0 before the factorization */
-        code = fill_equal(r + code[0], a[code[2]], count, code);
+        fill_equal(r + code[0], a[code[2]], count);
+        code += 4;
         break;
       }
       EACH(2, R = A);

@@ -13,11 +13,16 @@ static const double least_gain = 1e-13;
  */
 static const double differing_share = 1e-8;
 
+double change_of_rate(const struct ContactImpulses *impulses, const double *impulse, size_t row) {
+  double change = 0.0;
+  for (size_t j = 0; j < impulses->count; j++) change += impulses->delassus[row * impulses->count + j] * impulse[j];
+  return change;
+}
+
 bool gains_energy(const struct ContactImpulses *impulses, const double *impulse) {
   double work = 0.0, size = 0.0;
   for (size_t i = 0; i < impulses->count; i++) {
-    double change = 0.0;
-    for (size_t j = 0; j < impulses->count; j++) change += impulses->delassus[i * impulses->count + j] * impulse[j];
+    double change = change_of_rate(impulses, impulse, i);
     work += impulse[i] * (impulses->rate[i] + 0.5 * change);
     size += fabs(impulse[i]) * (fabs(impulses->rate[i]) + 0.5 * fabs(change));
   }

@@ -21,6 +21,9 @@ struct ContactImpulses {
   void *block;
 };
 
+/* Returns the change of the rate of a row by impulses, of W p. */
+double change_of_rate(const struct ContactImpulses *impulses, const double *impulse, size_t row);
+
 /* True if the work of the impulses is positive beyond rounding. */
 bool gains_energy(const struct ContactImpulses *impulses, const double *impulse);
 

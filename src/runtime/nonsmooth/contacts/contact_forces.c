@@ -158,17 +158,6 @@ static size_t find_opponent(const struct ContactImpulses *impulses, size_t row) 
   return found;
 }
 
-static void log_crushed(const struct Resolution *resolution, const struct ContactImpulses *impulses, size_t contact) {
-  const struct ContactMetadata *contacts = resolution->switches->contacts;
-  size_t row = 0;
-  while (impulses->member[row] != contact) row++;
-  log_message(
-      resolution->instance, resolution_status(resolution),
-      "time %g: the contacts '%s' and '%s' crush a body between them: prescribed motions, or far larger masses, "
-      "close one of them; expected motions that leave room, or a force or a spring in place of one contact",
-      resolution->time, contacts[contact].name, contacts[impulses->member[find_opponent(impulses, row)]].name);
-}
-
 const char *contact_forces_report_crushed(struct Resolution *resolution, size_t contact) {
   const struct SwitchTable *switches = resolution->switches;
   struct ContactImpulses impulses;
@@ -176,7 +165,14 @@ const char *contact_forces_report_crushed(struct Resolution *resolution, size_t 
     resolution->part[i] = i == contact || is_touching(resolution, i) ? TAKES_PART : LEFT_OUT;
   for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = LEFT_OUT;
   if (!find_contact_impulses(resolution, &impulses)) return no_contact_impulses;
-  log_crushed(resolution, &impulses, contact);
+  size_t row = 0;
+  while (impulses.member[row] != contact) row++;
+  log_message(
+      resolution->instance, resolution_status(resolution),
+      "time %g: the contacts '%s' and '%s' crush a body between them: prescribed motions, or far larger masses, "
+      "close one of them; expected motions that leave room, or a force or a spring in place of one contact",
+      resolution->time, switches->contacts[contact].name,
+      switches->contacts[impulses.member[find_opponent(&impulses, row)]].name);
   contact_impulses_free(resolution, &impulses);
   return crushed;
 }
@@ -300,7 +296,7 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
   if (slides && (closes || !is_unclear)) resting.solutions = resting_forces_solve(&resting.forces, !closes);
-  /* Of several motions, a short step of the law of impacts chooses one (end_slip.h). */
+  /* Where several motions exist, the impulses of a short step select one (end_slip.h). */
   bool is_chosen = resting.solutions == SEVERAL_MOTIONS && !closes && resolution->continued_forces > 0;
   bool is_crushed = !slides && closes && !resting_forces_press(&resting.forces);
   if (resting.solutions > PERHAPS_OTHERS && !is_chosen) laws->find_paradox(resolution, &resting, &paradox);

@@ -75,19 +75,22 @@ bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double 
   return flight_is_lost(resolution, contact, rate, -contact_value(resolution, contact, CONTACT_ACCELERATION));
 }
 
-bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
+/* True if the contact is closed, or touches, and its bounce is lost if its gap has the acceleration -fall. */
+static bool rests_if_falling(const struct Resolution *resolution, size_t contact, double fall) {
   if (contact_is_closed(resolution, contact)) return true;
   return is_touching(resolution, contact) &&
-         bounce_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE));
+         flight_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE), fall);
+}
+
+bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
+  return rests_if_falling(resolution, contact, -contact_value(resolution, contact, CONTACT_ACCELERATION));
 }
 
 bool contact_may_rest(const struct Resolution *resolution, size_t contact) {
   double fastest = 0.0;
-  if (contact_is_closed(resolution, contact)) return true;
-  if (!is_touching(resolution, contact)) return false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
     fastest = fmax(fastest, fabs(contact_value(resolution, i, CONTACT_ACCELERATION)));
-  return flight_is_lost(resolution, contact, contact_value(resolution, contact, CONTACT_RATE), fastest);
+  return rests_if_falling(resolution, contact, fastest);
 }
 
 double largest_contact_force(const struct Resolution *resolution) {

@@ -19,9 +19,6 @@
 #include "nonsmooth/planes/rest_forces.h"
 #include "nonsmooth/tolerances.h"
 
-/* Continuations of forces of short steps in an event resolution. */
-enum { CONTINUE_LIMIT = 20 };
-
 /* In units of its stiction: a friction that needs more cannot stop the motion. */
 static const double hopeless = 1e6;
 
@@ -393,5 +390,5 @@ bool plane_rests_find_with_contacts(struct Resolution *resolution) {
 }
 
 bool plane_rests_continue(struct Resolution *resolution, bool stops) {
-  return ++resolution->continued_forces <= CONTINUE_LIMIT && find_with_contacts(resolution, true, stops);
+  return find_with_contacts(resolution, true, stops);
 }

@@ -30,5 +30,5 @@ bool plane_rests_find(struct Resolution *resolution);
  */
 bool plane_rests_find_with_contacts(struct Resolution *resolution);
 
-/* The same from the forces in guess[], at most CONTINUE_LIMIT times. Slow frictions slide on unless the motion stops. */
+/* The same from the forces in guess[]. Slow frictions slide on unless the motion stops. */
 bool plane_rests_continue(struct Resolution *resolution, bool stops);

@@ -30,8 +30,8 @@ static const double short_shares[] = {1e-7, 1e-5, 1e-3};
 enum { SHARES = sizeof short_shares / sizeof *short_shares };
 
 /*
- * A second step, longer by this factor, tells impulses from finite forces, whose impulses grow by the factor, too. The
- * growth between both is the geometric mean of the factor and 1.
+ * Factor of a second, longer step. The impulses of finite forces grow by this factor, those of an impact do not grow.
+ * The least growth of the former is the geometric mean of the factor and 1.
  */
 static const double longer_by = 10.0, least_growth = 3.1622776601683795;
 
@@ -44,8 +44,8 @@ static const double compliance = 1e-6;
 /* Relative to the limit of a friction, or to the largest force: smaller differences, or forces, are rounding errors. */
 static const double at_limit = 1e-9;
 
-/* Slips that are ended in an event, and times that frictions along lines take the modes of a step; more have no end. */
-enum { SLIP_LIMIT = 100, LINE_LIMIT = 20 };
+/* Slips that an event ends, and times that it takes the modes of a step. More of them have no end. */
+enum { SLIP_LIMIT = 100, MODES_LIMIT = 20 };
 
 /* A short step. */
 struct ShortStep {
@@ -120,11 +120,8 @@ static size_t find_most(const struct ContactImpulses *impulses, const double *im
 /* Returns the largest change of a rate by impulses. */
 static double largest_change(const struct ContactImpulses *impulses, const double *impulse) {
   double largest = 0.0;
-  for (size_t row = 0; row < impulses->count; row++) {
-    double change = 0.0;
-    for (size_t i = 0; i < impulses->count; i++) change += impulses->delassus[row * impulses->count + i] * impulse[i];
-    largest = fmax(largest, fabs(change));
-  }
+  for (size_t row = 0; row < impulses->count; row++)
+    largest = fmax(largest, fabs(change_of_rate(impulses, impulse, row)));
   return largest;
 }
 
@@ -192,8 +189,8 @@ static void continue_impulses(struct ShortStep *step, double share) {
 }
 
 /*
- * Where bodies may be stressed between contacts, impulses of any size are found. With compliant contacts they are small.
- * Takes those to which these lead, if there are any.
+ * Replaces the impulses by smaller ones, if these exist. A body between contacts may be under self-stress, whose size is
+ * not determined. Compliant contacts have the least one; Newton's method continues it to rigid contacts.
  */
 static void take_least_stress(struct ShortStep *step) {
   const struct Resolution *resolution = step->resolution;
@@ -297,12 +294,11 @@ static void mark_slow(struct Resolution *resolution) {
       *part_of_friction(resolution, i) = IS_SLOW;
 }
 
-/* Sets the modes of contacts and of frictions along lines to those of a step. False after many steps in the event. */
-static bool take_lines(struct Resolution *resolution) {
+/* Sets the modes of contacts and of frictions along lines to those of a step. */
+static void take_lines(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t contacts = switches->contact_count;
   double largest = 0.0;
-  if (++resolution->continued_forces > LINE_LIMIT) return false;
   for (size_t i = 0; i < contacts; i++) largest = fmax(largest, resolution->guess[i]);
   for (size_t i = 0; i < contacts; i++) {
     if (resolution->part[i] == LEFT_OUT) continue;
@@ -312,19 +308,24 @@ static bool take_lines(struct Resolution *resolution) {
     for (size_t k = 0; k < switches->friction_count; k++)
       if (rests_on(switches, k, i)) set_friction(resolution, k, resolution->guess[contacts + k]);
   }
-  return true;
 }
 
-/* Finds the modes from the forces of a step. False if there are none. */
+/* Evaluates with the present modes; with those of release_chosen() if they have no accelerations. False without any. */
+static bool evaluate_or_release(struct Resolution *resolution) {
+  if (resolution_evaluate(resolution)) return true;
+  release_chosen(resolution);
+  return resolution_evaluate(resolution);
+}
+
+/* Finds the modes from the forces of a step. False if there are none, or after many steps in the event. */
 static bool continue_forces(struct Resolution *resolution, bool stops) {
   const struct FrictionLaws *laws = resolution->switches->friction_laws;
-  if (resolution->switches->plane_count == 0) return take_lines(resolution);
-  if (!resolution_evaluate(resolution)) {
-    release_chosen(resolution);
-    if (!resolution_evaluate(resolution)) return false;
-  }
-  if (!laws->continue_together(resolution, stops)) return false;
-  set_flips(resolution, 1.0);
+  bool has_planes = resolution->switches->plane_count > 0;
+  if (has_planes && !evaluate_or_release(resolution)) return false;
+  if (++resolution->continued_forces > MODES_LIMIT) return false;
+  if (!has_planes) take_lines(resolution);
+  else if (!laws->continue_together(resolution, stops)) return false;
+  else set_flips(resolution, 1.0);
   return true;
 }
 
