@@ -19,7 +19,8 @@
  * Then the associated problem is solved, which is convex. There the rate of each contact is reduced by mu |u| of its
  * frictions. |u| is that of the last solution, and the problem is solved again until it does not change (V. Acary and
  * F. Cadoux: Applications of an existence result for the Coulomb friction problem, Recent Advances in Contact
- * Mechanics, 2013).
+ * Mechanics, 2013). Where nothing slides, u = 0, and the first such problem finds the forces if there are any. For forces
+ * it therefore comes first: frictions that can carry the load do, even if they could also slip.
  */
 #include "nonsmooth/cones/cone_interior.h"
 
@@ -392,11 +393,12 @@ double cone_interior(struct Cones *cones, double enough, bool is_centered, doubl
   memset(interior.shift, 0, n * sizeof *interior.shift);
   fill_units_of_rows(&interior);
   if (interior.size > 0.0) {
-    bool is_found = follow_central_path(&interior);
-    if (!is_found && is_centered) {
-      interior.is_centered = false;
-      is_found = follow_central_path(&interior);
-    }
+    interior.is_associated = is_centered;
+    bool is_found = is_centered && follow_central_path(&interior);
+    interior.is_associated = false;
+    is_found = is_found || follow_central_path(&interior);
+    interior.is_centered = false;
+    is_found = is_found || (is_centered && follow_central_path(&interior));
     interior.is_associated = true;
     for (int count = 0; count < ASSOCIATED_LIMIT && interior.least > nearly_solved && !is_found; count++) {
       is_found = follow_central_path(&interior);

@@ -177,7 +177,8 @@ static void add_effect(struct RestForces *forces, size_t of, double share, doubl
 
 /*
  * Fills the derivatives by the force of one row. Frictions along lines change theirs, too, if these follow from contacts;
- * their columns are filled first. False if accelerations do not exist.
+ * their columns are filled first. False if accelerations do not exist, or the friction has no force because that of its
+ * contact is 0 without frictions.
  */
 static bool fill_column(struct RestForces *forces, size_t column) {
   size_t n = forces->n;
@@ -198,7 +199,7 @@ static bool fill_column(struct RestForces *forces, size_t column) {
     add_effect(forces, line, -change / force, acceleration, stiction, kinetic, n);
   }
   set_share(forces, column, 0.0);
-  return exist;
+  return exist && (force != 0.0 || forces->impulses.contact_count > 0);
 }
 
 /* Subtracts the effect of the forces with which the functions were read first. */
@@ -258,10 +259,8 @@ static double length_of(const struct RestForces *forces, size_t row, const doubl
   return row_is_of_line(forces, row) ? fabs(vector[row]) : hypot(vector[row], vector[row + 1]);
 }
 
-/* True if a friction accelerates by the solution, or was overcome and is at its limit. */
-static bool begins_to_slip(const struct RestForces *forces, size_t row) {
-  if (length_of(forces, row, forces->behind) > forces->none) return true;
-  if (*part_of_friction(forces->resolution, forces->impulses.member[row]) != IS_OVERCOME) return false;
+/* True if the force of a friction is at its limit. */
+static bool is_at_limit(const struct RestForces *forces, size_t row) {
   double limit = limit_at(forces, row, forces->impulses.given, forces->impulses.coefficient);
   double rounding = share_at_limit * largest_stiction(forces->resolution),
          response = forces->impulses.delassus[row * (forces->n + 1)];
@@ -269,11 +268,24 @@ static bool begins_to_slip(const struct RestForces *forces, size_t row) {
   return length_of(forces, row, forces->force) >= least;
 }
 
-/* Marks the frictions that slip, which have their kinetic limit. True if a limit falls. */
+/* True if a friction that was overcome is at its limit. */
+static bool any_has_reached_limit(const struct RestForces *forces) {
+  bool any = false;
+  for (size_t row = forces->impulses.contact_count; row < forces->n; row += rows_of_friction(forces, row))
+    any |=
+        *part_of_friction(forces->resolution, forces->impulses.member[row]) == IS_OVERCOME && is_at_limit(forces, row);
+  return any;
+}
+
+/*
+ * Marks the frictions that slip, which have their kinetic limit: those that accelerate, and if one is overcome, all at
+ * their limits. Forces that share a load have margins to their limits as long as they hold it. True if a limit falls.
+ */
 static bool lower_limits(struct RestForces *forces) {
-  bool falls = false;
+  bool falls = false, is_overcome = any_has_reached_limit(forces);
   for (size_t row = forces->impulses.contact_count; row < forces->n; row += rows_of_friction(forces, row)) {
-    if (rest_slips(forces, row) || !begins_to_slip(forces, row)) continue;
+    bool slips = length_of(forces, row, forces->behind) > forces->none || (is_overcome && is_at_limit(forces, row));
+    if (rest_slips(forces, row) || !slips) continue;
     falls |= limit_at(forces, row, forces->given_stiction, forces->stiction) >
              (1.0 + share_at_limit) * limit_at(forces, row, forces->given_kinetic, forces->kinetic);
     for (size_t i = 0; i < rows_of_friction(forces, row); i++) forces->slips[friction_of_row(forces, row) + i] = 1.0;
