@@ -75,6 +75,18 @@ bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double 
   return flight_is_lost(resolution, contact, rate, -contact_value(resolution, contact, CONTACT_ACCELERATION));
 }
 
+/* Returns the largest size of the accelerations of all gaps. */
+static double largest_acceleration_of_gaps(const struct Resolution *resolution) {
+  double largest = 0.0;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    largest = fmax(largest, fabs(contact_value(resolution, i, CONTACT_ACCELERATION)));
+  return largest;
+}
+
+bool bounce_is_lost_beside_others(const struct Resolution *resolution, size_t contact, double rate) {
+  return flight_is_lost(resolution, contact, rate, largest_acceleration_of_gaps(resolution));
+}
+
 /* True if the contact is closed, or touches, and its bounce is lost if its gap has the acceleration -fall. */
 static bool rests_if_falling(const struct Resolution *resolution, size_t contact, double fall) {
   if (contact_is_closed(resolution, contact)) return true;
@@ -87,10 +99,7 @@ bool contact_is_at_rest(const struct Resolution *resolution, size_t contact) {
 }
 
 bool contact_may_rest(const struct Resolution *resolution, size_t contact) {
-  double fastest = 0.0;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    fastest = fmax(fastest, fabs(contact_value(resolution, i, CONTACT_ACCELERATION)));
-  return rests_if_falling(resolution, contact, fastest);
+  return rests_if_falling(resolution, contact, largest_acceleration_of_gaps(resolution));
 }
 
 double largest_contact_force(const struct Resolution *resolution) {

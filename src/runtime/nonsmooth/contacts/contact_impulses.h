@@ -83,3 +83,6 @@ bool contact_may_rest(const struct Resolution *resolution, size_t contact);
  * height or duration.
  */
 bool bounce_is_lost(const struct Resolution *resolution, size_t contact, double rate);
+
+/* The same if others press its bodies together: its gap then closes with any acceleration that gaps have. */
+bool bounce_is_lost_beside_others(const struct Resolution *resolution, size_t contact, double rate);

@@ -83,17 +83,30 @@ static int impact_limit(const struct Resolution *resolution) {
 }
 
 /*
+ * True if a contact that touches would bounce visibly from an impact at a speed. After more impacts than contacts, bodies
+ * pass impulses to and fro, and others press the contacts together.
+ */
+static bool any_bounces(const struct Resolution *resolution, double speed) {
+  size_t contacts = 0;
+  bool any = false;
+  for (size_t i = 0; i < resolution->switches->contact_count; i++) contacts += is_touching(resolution, i) ? 1 : 0;
+  bool is_passed_back = resolution->impacts > (int)contacts;
+  for (size_t i = 0; i < resolution->switches->contact_count && !any; i++) {
+    double rate = contact_value(resolution, i, CONTACT_RESTITUTION) * speed;
+    any = is_touching(resolution, i) &&
+          !(is_passed_back ? bounce_is_lost_beside_others(resolution, i, rate) : bounce_is_lost(resolution, i, rate));
+  }
+  return any;
+}
+
+/*
  * True if the impact of a contact is taken by itself, and others follow from it. False for one of all that touch. Then
  * none of them would bounce visibly, or this one has 1e-12 of the largest energy, or there were too many impacts.
  */
 static bool passes_on(const struct Resolution *resolution, size_t contact) {
   double speed = -contact_value(resolution, contact, CONTACT_RATE);
-  bool any_bounces = false;
-  if (speed <= unresolved_share * fastest_of_event(resolution)) return false;
-  for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    any_bounces |= is_touching(resolution, i) &&
-                   !bounce_is_lost(resolution, i, contact_value(resolution, i, CONTACT_RESTITUTION) * speed);
-  return any_bounces && resolution->impacts < impact_limit(resolution);
+  return speed > unresolved_share * fastest_of_event(resolution) && any_bounces(resolution, speed) &&
+         resolution->impacts < impact_limit(resolution);
 }
 
 /* True if a contact still closes after an impact of all that touch, not only by uncertain directions of the gaps. */
