@@ -57,7 +57,7 @@ enum VariableKind {
 
 /*
  * Counters since the start: steps of the solver, evaluations of the derivatives and of the Jacobian, handovers between
- * methods, events.
+ * methods, and events. The last one, of evaluations in event resolutions, is not reported.
  */
 enum Statistic {
   STATISTIC_STEPS,
@@ -65,6 +65,7 @@ enum Statistic {
   STATISTIC_JACOBIANS,
   STATISTIC_HANDOVERS,
   STATISTIC_EVENTS,
+  STATISTIC_ROUNDS,
   STATISTIC_COUNT
 };
 

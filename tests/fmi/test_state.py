@@ -226,8 +226,8 @@ def test_truncated_and_foreign_bytes_are_errors(open_fmu):
 HEADER = 64  # bytes; the last eight are the checksum of the snapshot, which follows
 # The snapshot begins with eight integers, the statistics, and the steps of an integrator. The update in event mode, a mark of redundant constraints,
 # the statistics as reported, nine numbers, and values follow.
-MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, UPDATE = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 72, HEADER + 80
-REDUNDANT, TIME = HEADER + 88, HEADER + 136
+MODE, CHANGED, WAITING, STATISTICS, COMPLETED_STEPS, UPDATE = HEADER, HEADER + 20, HEADER + 24, HEADER + 32, HEADER + 80, HEADER + 88
+REDUNDANT, TIME = HEADER + 96, HEADER + 152
 NUMBERS = ["time", "start_time", "stop_time", "tolerance", "suggested_step", "last_start", "last_end", "searched", "switched"]
 VALUES = TIME + 8 * len(NUMBERS)
 

@@ -5,10 +5,11 @@
  * the event comes from the dense output. resolve() finds the modes and the state after it, and the solver restarts
  * there.
  *
- * Three cases have no next event. If events accumulate at a point (Zeno behaviour), EVENT_LIMIT of them within rounding,
- * and one more for each indicator, stop the motion. If zeros cannot be separated, the solver restarts with steps shorter
- * by NEARER, at most NEARER_LIMIT times in a row. If intervals may hide something however short they are, UNSURE_LIMIT
- * of them stop the motion. So every communication step ends.
+ * Three cases have no next event. If events accumulate at a point (Zeno behaviour), there are EVENT_LIMIT of them within
+ * rounding, and one more for each indicator. If zeros cannot be separated, the solver restarts with steps shorter
+ * by NEARER, at most NEARER_LIMIT times in a row. If intervals may hide something however short they are, there are
+ * UNSURE_LIMIT of them. Time steps then pass the events of contacts with friction (time_steps.h). Else the motion stops.
+ * So every communication step ends.
  */
 #include "events/passing.h"
 
@@ -25,6 +26,7 @@
 #include "nonsmooth/resolve.h"
 #include "nonsmooth/resolution.h"
 #include "detection/search_interval.h"
+#include "events/time_steps.h"
 #include "instance/time_laws.h"
 
 /* Consecutive events within rounding after which the motion stops, beyond one of each indicator. */
@@ -50,6 +52,9 @@ static const double further_steps = 16.0, further_share = 2.0, share_before_even
  * all indicators.
  */
 static const double look_ahead_share = 1.25, look_ahead_growth = 8.0;
+
+/* The part of the rest of a communication step that time steps pass, if its events would take too much work. */
+static const double stepped_share = 0.5;
 
 static const char gathering[] = "events accumulate (Zeno behaviour)";
 static const char bounces[] =
@@ -234,6 +239,39 @@ static void name_indicator(size_t indicator, char *text, size_t size) {
   else snprintf(text, size, "the friction '%s'", switches->frictions[friction].name);
 }
 
+/* Lets the solver start anew at a time with the modes that were found. False if that fails. */
+static bool continue_from(struct Instance *instance, const struct CommunicationStep *step, double time,
+                          struct EventProgress *progress) {
+  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, time) != NULL) return false;
+  progress->searched = time;
+  return true;
+}
+
+/* Passes events by time steps from a time on, from where the state is known. False if that fails. */
+static bool step_over(struct Instance *instance, const struct CommunicationStep *step, double begin, double until,
+                      struct EventProgress *progress) {
+  double time = begin;
+  if (!lagrangian.solver->interpolate(instance, begin, instance->event_state)) return false;
+  if (!step_over_events(instance, until, step->end, &progress->share, &time)) return false;
+  progress->close_events = progress->close_events_at_rest = 0;
+  return continue_from(instance, step, time, progress);
+}
+
+/*
+ * Finds the modes behind an event, whose state is in event_state. If there are none, time steps may pass the event; sets
+ * *is_passed then. Returns NULL, or the reason for a failure, after logging it.
+ */
+static const char *modes_behind(struct Instance *instance, const struct CommunicationStep *step, double time,
+                                size_t indicator, struct EventProgress *progress, bool *is_passed) {
+  struct DeferredLog deferred;
+  log_defer(instance, &deferred);
+  const char *problem = modes_at(instance, time, instance->event_state, AT_EVENT, indicator);
+  log_release(instance, &deferred);
+  *is_passed = problem != NULL && step_over(instance, step, progress->searched, progress->searched, progress);
+  if (!*is_passed) log_write_deferred(instance, &deferred);
+  return *is_passed ? NULL : problem;
+}
+
 /*
  * Handles an event, whose state is in event_state, or ends the step before it. If a contact lifts whose gap falls below
  * 0, the errors of the method are larger than the gap. The next step of the solver is then shorter. Returns NULL, or
@@ -249,7 +287,9 @@ static const char *pass_event(struct Instance *instance, struct CommunicationSte
   const struct SampleMetadata *sample = sample_of(lagrangian.switches, indicator);
   double moment = sample != NULL ? sample_time(instance, sample) : time; /* equal up to rounding, but without drift */
   bool is_gap = is_bounce(instance, indicator);
-  const char *problem = modes_at(instance, moment, instance->event_state, AT_EVENT, indicator);
+  bool is_passed = false;
+  const char *problem = modes_behind(instance, step, moment, indicator, progress, &is_passed);
+  if (is_passed) return NULL;
   if (is_gap && instance->lifts) progress->step_limit = (instance->fmu_state->last_step.end - time) / NEARER;
   const char *obstacle = start_anew(instance, step, time);
   return problem != NULL ? problem : obstacle;
@@ -359,14 +399,6 @@ static bool change_modes(struct Instance *instance, double begin, double time, b
   return resolve(instance, time, state, AT_CHANGE, 0, changes) == NULL;
 }
 
-/* Lets the solver start anew at a time with the modes that were found. False if that fails. */
-static bool continue_from(struct Instance *instance, const struct CommunicationStep *step, double time,
-                          struct EventProgress *progress) {
-  if (evaluate_prepare(instance) != STATUS_DONE || start_anew(instance, step, time) != NULL) return false;
-  progress->searched = time;
-  return true;
-}
-
 /* Takes the modes of a moment after a time, and the state there. False if none change. */
 static bool pass_moment(struct Instance *instance, const struct CommunicationStep *step, double begin,
                         struct EventProgress *progress) {
@@ -416,6 +448,14 @@ static bool contradicts(struct Instance *instance, double time) {
   return solver_project(instance, time, state) != NULL;
 }
 
+/* Passes events that cannot be separated: by shorter steps of the solver, or by time steps. */
+static const char *pass_inseparable(struct Instance *instance, const struct CommunicationStep *step, size_t indicator,
+                                    struct EventProgress *progress) {
+  double begin = progress->searched;
+  if (go_nearer(instance, step, progress) || step_over(instance, step, begin, begin, progress)) return NULL;
+  return lose(instance, progress, indicator);
+}
+
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress) {
   double end = fmin(instance->fmu_state->last_step.end, step->end), time;
   size_t indicator = 0;
@@ -429,61 +469,32 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
     time = end;
   }
   if (!is_found) return NULL;
-  if (isnan(time)) return go_nearer(instance, step, progress) ? NULL : lose(instance, progress, indicator);
+  if (isnan(time)) return pass_inseparable(instance, step, indicator, progress);
   count_event(instance, step, time, indicator, progress);
   if (is_endless(progress->close_events) || progress->close_events_at_rest >= EVENT_LIMIT)
-    return report_zeno(instance, step, progress, indicator);
+    return step_over(instance, step, time, time, progress) ? NULL : report_zeno(instance, step, progress, indicator);
   if (instance->stops_at_events) instance->fmu_state->close_events = progress->close_events;
   if (!take_event_state(instance, time)) return "the state is not available at the event";
   if (contradicts(instance, time) && pass_contradictions(instance, step, progress)) return NULL;
   return pass_event(instance, step, time, indicator, progress);
 }
 
-/* In units of the scales: how far coordinates are moved beyond a jam that the solver approaches. */
-static const double beyond_jam[] = {1e-12, 1e-10, 1e-8};
-enum { JAM_TRIALS = sizeof beyond_jam / sizeof *beyond_jam };
-
-/* Moves the coordinates of event_state along the velocities by a share of their scales. Returns the time that takes. */
-static double move_coordinates(const struct Instance *instance, double share) {
-  double *state = instance->event_state, fastest = 0.0;
-  size_t n = lagrangian.coordinate_count;
-  for (size_t i = 0; i < n; i++) fastest = fmax(fastest, fabs(state[n + i]) / scale_of(state, i));
-  double moment = fastest > 0.0 ? share / fastest : 0.0;
-  for (size_t i = 0; i < n; i++) state[i] += moment * state[n + i];
-  return moment;
-}
-
-/*
- * Passes a jam of several contacts, which friction presses together ever more strongly: beyond it there are no forces,
- * and an impulse ends the slip. False if there is none.
- */
-static bool pass_jam(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
-  const struct SlidingLaws *laws = lagrangian.switches->sliding_laws;
-  double last = instance->fmu_state->last_step.end;
-  if (laws == NULL) return false;
-  for (int i = 0; i < JAM_TRIALS; i++) {
-    if (!lagrangian.solver->interpolate(instance, last, instance->event_state)) return false;
-    double time = last + move_coordinates(instance, beyond_jam[i]);
-    struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_CHANGE);
-    if (!(time > last && time < step->end) || !resolution_evaluate(&resolution)) continue;
-    if (!laws->end_slip(&resolution)) continue;
-    return modes_at(instance, time, instance->event_state, AT_CHANGE, 0) == NULL &&
-           continue_from(instance, step, time, progress);
-  }
-  return false;
-}
-
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                 struct EventProgress *progress) {
-  double time;
+  double last = instance->fmu_state->last_step.end, time;
   size_t indicator;
   if (is_endless(++progress->close_events)) return problem;
   if (pass_contradictions(instance, step, progress)) return NULL;
   if (!search_for_jump(instance, &time, instance->event_state, &indicator))
-    return pass_jam(instance, step, progress) ? NULL : problem;
+    return step_over(instance, step, last, last, progress) ? NULL : problem;
   if (time > step->end) time = step->end;
   progress->searched = time;
   return pass_event(instance, step, time, indicator, progress);
+}
+
+bool events_step_over(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress) {
+  double begin = instance->fmu_state->last_step.end;
+  return step_over(instance, step, begin, begin + stepped_share * (step->end - begin), progress);
 }
 
 const char *events_check(struct Instance *instance, double time) {

@@ -15,3 +15,4 @@ const char *events_update(struct Instance *instance);
 const char *events_pass(struct Instance *instance, struct CommunicationStep *step, struct EventProgress *progress);
 const char *events_pass_barrier(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                                 struct EventProgress *progress);
+bool events_step_over(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress);

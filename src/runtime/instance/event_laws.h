@@ -27,6 +27,7 @@ struct EventProgress {
   int nearer;               /* times that this was shortened since a solver step without events */
   size_t indicator;         /* of the last event */
   double looked_ahead;      /* the last time from which modes were found by looking ahead; -INFINITY for none */
+  double share;             /* of the last time step over events (time_step.h); 0 for none */
   int looks;                /* how many more times they were from that time */
 };
 
@@ -65,6 +66,8 @@ struct EventLaws {
    */
   const char *(*pass_barrier)(struct Instance *instance, struct CommunicationStep *step, const char *problem,
                               struct EventProgress *progress);
+  /* Passes events of the step, which would take too much work, by time steps. False if that fails. */
+  bool (*step_over)(struct Instance *instance, const struct CommunicationStep *step, struct EventProgress *progress);
   /* Logs the events of a step with too many solver steps, if most of them ended at events. */
   void (*explain)(struct Instance *instance, const struct CommunicationStep *step,
                   const struct EventProgress *progress);

@@ -1,6 +1,8 @@
 /* Statuses of calls, and messages to the importer. */
 #pragma once
 
+#include <stdbool.h>
+
 /* Makes compilers check the arguments of a format. */
 #ifdef __GNUC__
 #define LIKE_PRINTF(slot, first) __attribute__((format(printf, slot, first)))
@@ -27,6 +29,20 @@ struct Log {
   void *receiver;
   unsigned wanted; /* bits 1 << status; other messages are not formatted */
 };
+
+/* Keeps the first message, as a receiver of at least MESSAGE_LENGTH bytes that begin with a zero. */
+void log_keep_first(void *receiver, enum Status status, const char *message);
+
+/* A log whose messages of STATUS_DISCARD are deferred. */
+struct DeferredLog {
+  struct Log log;
+  char text[MESSAGE_LENGTH]; /* the first such message; empty for none */
+};
+
+/* Defers messages of STATUS_DISCARD until log_release(); log_write_deferred() writes the first one, if there is any. */
+void log_defer(struct Instance *instance, struct DeferredLog *deferred);
+void log_release(struct Instance *instance, const struct DeferredLog *deferred);
+void log_write_deferred(const struct Instance *instance, const struct DeferredLog *deferred);
 
 /* Formats a message and writes it to the receiver, if its status is wanted. */
 void log_write(const struct Log *log, enum Status status, const char *format, ...) LIKE_PRINTF(3, 4);

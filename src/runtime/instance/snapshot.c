@@ -24,7 +24,7 @@ struct Header {
 
 static const char magic[8] = {'l', 'a', 'g', 'r', 'a', 'n', 'g', 'e'};
 /* Version of the layout of snapshots; a change of struct FmuState or of a solver's part raises it. */
-enum { VERSION = 11 };
+enum { VERSION = 12 };
 
 size_t snapshot_size(void) {
   return sizeof(struct Header) + fmu_state_size();

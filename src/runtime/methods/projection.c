@@ -32,9 +32,11 @@ static const double rounded_away = 1e-6; /* change that is rounding error if it 
 static const double largest_move = 0.5;  /* of start values in one iteration, in units of their scales */
 static const double fulfilled = 1e-10;   /* largest residual as a length, in units of the scale of the state */
 static const double redundant_residual = 1e-8; /* the same for a redundant constraint, before the last change */
-static const double largest_jump = 0.1;        /* residual by an input's change, in units of the scale of the state */
-static const double noted_move = 1e-2;         /* with prescribed inputs: moves to log, in the same units */
-static const double vanishing = 1e-6;          /* ratio of a row of J where its constraint holds to the row nearby */
+/* The same for the velocity of a friction that sticks, which may creep where others nearly hold it; times the tolerance. */
+static const double creep_share = 0.1;
+static const double largest_jump = 0.1; /* residual by an input's change, in units of the scale of the state */
+static const double noted_move = 1e-2;  /* with prescribed inputs: moves to log, in the same units */
+static const double vanishing = 1e-6;   /* ratio of a row of J where its constraint holds to the row nearby */
 
 /*
  * The workspace, before its arrays. change, residual, pivot and slope follow each other, as lagrangian.constraints
@@ -129,13 +131,23 @@ static double move_velocities(struct Instance *instance, double time, double *st
   return size;
 }
 
+/* Returns the residual of a redundant constraint that is allowed. */
+static double allowed_residual(const struct Instance *instance, size_t constraint) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  bool is_of_friction = false;
+  for (size_t i = 0; switches != NULL && i < switches->friction_count; i++)
+    is_of_friction |= switches->frictions[i].constraint == constraint;
+  return is_of_friction ? fmax(redundant_residual, creep_share * solver_tolerance(instance)) : redundant_residual;
+}
+
 /* True if redundant constraints agree with the others: a constraint may be redundant only at the start. */
-static bool others_hold(const struct ProjectionWork *work, const double *state, size_t first) {
+static bool others_hold(const struct Instance *instance, const double *state, size_t first) {
+  const struct ProjectionWork *work = instance->projection_work;
   double scale = largest_scale(state, first);
-  for (size_t j = 0; j < lagrangian.constraints.count; j++)
-    if (isinf(work->pivot[j]) && !(fabs(work->residual[j]) <= redundant_residual * work->slope[j] * scale))
-      return false;
-  return true;
+  bool hold = true;
+  for (size_t j = 0; j < lagrangian.constraints.count && hold; j++)
+    hold = !isinf(work->pivot[j]) || fabs(work->residual[j]) <= allowed_residual(instance, j) * work->slope[j] * scale;
+  return hold;
 }
 
 /* True if a constraint follows from others. The row of an open contact is 0, and takes no part. */
@@ -157,7 +169,7 @@ static double project_velocities(struct Instance *instance, double time, double 
   const struct ProjectionWork *work = instance->projection_work;
   double size = move_velocities(instance, time, state, VELOCITIES);
   bool hold = isfinite(size) && (!has_redundant(work) || (evaluate_residual(instance, time, state, VELOCITIES) &&
-                                                          others_hold(work, state, lagrangian.coordinate_count)));
+                                                          others_hold(instance, state, lagrangian.coordinate_count)));
   if (!hold) return INFINITY;
   memset(work->residual, 0, lagrangian.constraints.count * sizeof *work->residual);
   return size;
@@ -185,7 +197,7 @@ static double project(struct Instance *instance, double time, double *state) {
     size = size_of(work->change, state, 0);
     bool is_rounded = size > 0.0 && size <= rounded_away && residual_is_rounding(instance, time, state);
     bool is_done = is_rounded || size <= converged || (size <= rounded_away && size >= before);
-    if (is_done && !others_hold(work, state, 0)) return INFINITY;
+    if (is_done && !others_hold(instance, state, 0)) return INFINITY;
     if (!is_rounded) move_positions(work, state, 1.0);
     if (!is_done) continue;
     double velocities = project_velocities(instance, time, state);

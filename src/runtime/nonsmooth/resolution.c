@@ -158,6 +158,7 @@ static double holding_force(const struct Resolution *resolution, size_t friction
 bool resolution_evaluate(struct Resolution *resolution) {
   size_t count = resolution_value_count(resolution->switches);
   double *error_bound = resolution->error_bound, *other = resolution->other_error_bound, factor, other_factor = 0.0;
+  resolution->instance->fmu_state->statistics[STATISTIC_ROUNDS]++;
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return false;
   if (!values_rounded(resolution, false, error_bound, &factor)) return false;
   for (size_t i = 0; i < resolution->switches->friction_count; i++)

@@ -23,13 +23,6 @@ static void exchange_fmu_states(struct Instance *instance) {
   instance->parameter_constants_are_stale = true;
 }
 
-/* Receives messages, and keeps the first one. */
-static void keep_message(void *receiver, enum Status status, const char *message) {
-  char *text = receiver;
-  (void)status;
-  if (text[0] == '\0') strncat(text, message, MESSAGE_LENGTH - 1);
-}
-
 static void report_impossible_start(struct Instance *instance, const char *reason) {
   if (instance->reported_impossible_start) return;
   log_message(instance, STATUS_WARNING,
@@ -43,7 +36,7 @@ static void resolve_silently(struct Instance *instance) {
   struct Log log = instance->log;
   uint64_t reported_singularity = instance->reported_singularity;
   bool starts = instance->fmu_state->phase == PHASE_INITIALIZATION;
-  instance->log = (struct Log){keep_message, reason, 1u << STATUS_DISCARD | 1u << STATUS_ERROR};
+  instance->log = (struct Log){log_keep_first, reason, 1u << STATUS_DISCARD | 1u << STATUS_ERROR};
   if (starts) instance->shown_is_found = start_find(instance) == STATUS_DONE;
   else instance->shown_is_found = evaluate_prepare(instance) == STATUS_DONE && start_step(instance);
   instance->log = log;

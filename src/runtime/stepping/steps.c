@@ -35,8 +35,14 @@ enum { RESTING_STEP_LIMIT = 20 };
 enum { SLOW_STEPS = 50000 };
 static const double SLOW_WORK = 2e9;
 
+/* Evaluations of an event whose work is lagrangian.steps.work.event. */
+static const double ROUNDS_OF_EVENT = 2.0;
+
 /* Operations in a communication step if the system sets no maxSteps: about 10 s. */
 static const double WORK_LIMIT = 3e10;
+
+/* The part of it that is allowed after events were passed by time steps. */
+static const double MORE_WORK = 0.05;
 
 static const char too_much_work[] = "the limit of work in one communication step, about 10 s, is reached; expected a "
                                     "shorter step, or a larger maxSteps of <solver>";
@@ -86,6 +92,7 @@ struct StepProgress {
   struct EventProgress progress;
   int64_t before[STATISTIC_COUNT]; /* the statistics at its start */
   bool is_reported;                /* the warning was logged */
+  double allowed;                  /* operations beyond the limit, after events were passed by time steps */
   int resting;                     /* consecutive solver steps too short to change the time */
   bool ends_at_event;              /* the motion cannot continue after an event */
 };
@@ -94,14 +101,15 @@ struct StepProgress {
 static double work_in_step(const struct Instance *instance, const struct CommunicationStep *step,
                            const struct StepProgress *course) {
   const int64_t *present = instance->fmu_state->statistics, *before = course->before;
+  double events = (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]);
+  double rounds = (double)(present[STATISTIC_ROUNDS] - before[STATISTIC_ROUNDS]) / ROUNDS_OF_EVENT;
   return (double)(present[STATISTIC_DERIVATIVES] - before[STATISTIC_DERIVATIVES]) * lagrangian.steps.work.evaluation +
-         (double)(present[STATISTIC_EVENTS] - before[STATISTIC_EVENTS]) * lagrangian.steps.work.event +
-         (double)step->count * lagrangian.steps.work.step;
+         fmax(events, rounds) * lagrangian.steps.work.event + (double)step->count * lagrangian.steps.work.step;
 }
 
 /* Returns NULL, or the limit that is exceeded. */
-static const char *excess(const struct CommunicationStep *step, double work) {
-  if (lagrangian.steps.max_steps == 0) return work < WORK_LIMIT ? NULL : too_much_work;
+static const char *excess(const struct CommunicationStep *step, double work, double allowed) {
+  if (lagrangian.steps.max_steps == 0) return work < WORK_LIMIT + allowed ? NULL : too_much_work;
   return step->count < lagrangian.steps.max_steps ? NULL : too_many_steps;
 }
 
@@ -109,7 +117,7 @@ static const char *excess(const struct CommunicationStep *step, double work) {
 static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step,
                               struct StepProgress *course) {
   double work = work_in_step(instance, step, course);
-  const char *problem = excess(step, work);
+  const char *problem = excess(step, work, course->allowed);
   if (problem != NULL && lagrangian.event_laws != NULL)
     lagrangian.event_laws->explain(instance, step, &course->progress);
   if (problem != NULL) return problem;
@@ -129,11 +137,20 @@ static const char *pass_barrier(struct Instance *instance, struct CommunicationS
   return problem;
 }
 
+/* Passes events that would take too much work. Returns NULL, or the reason for a failure. */
+static const char *pass_by_time_steps(struct Instance *instance, const struct CommunicationStep *step,
+                                      struct StepProgress *course) {
+  const struct EventLaws *laws = lagrangian.event_laws;
+  course->allowed = work_in_step(instance, step, course) - (1.0 - MORE_WORK) * WORK_LIMIT;
+  return laws != NULL && laws->step_over(instance, step, &course->progress) ? NULL : too_much_work;
+}
+
 /* Makes one solver step, or passes a zero that the solver cannot reach. Returns NULL, or the reason for a failure. */
 static const char *advance_once(struct Instance *instance, struct CommunicationStep *step,
                                 struct StepProgress *course) {
   const struct Span *last = &instance->fmu_state->last_step;
   const char *problem = check_cost(instance, step, course);
+  if (problem == too_much_work) return pass_by_time_steps(instance, step, course);
   if (problem != NULL) return problem;
   struct CommunicationStep near = *step; /* ends sooner if long steps cannot separate the events */
   near.step_limit = course->progress.step_limit;

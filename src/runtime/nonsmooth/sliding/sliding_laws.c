@@ -6,6 +6,7 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/sliding/end_slip.h"
+#include "nonsmooth/sliding/time_step.h"
 #include "nonsmooth/tolerances.h"
 
 /* Number of solutions, as messages say it. */
@@ -139,4 +140,5 @@ const struct SlidingLaws sliding_laws = {.any_begins = any_begins_to_slide,
                                          .resolve_paradox = resolve_paradox,
                                          .report_others = report_others,
                                          .end_slip = end_slip,
+                                         .time_step = time_step,
                                          .explain = explain_jam_of_contact};

@@ -1,0 +1,87 @@
+#include "events/time_steps.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "instance/time_laws.h"
+#include "nonsmooth/resolution.h"
+#include "nonsmooth/resolve.h"
+
+/* The first step, relative to the longest one, and the factor of each further one. */
+static const double first_share = 1.0 / 64.0, growth = 2.0;
+
+/* Divisor of a step without impulses, and the shortest one that is tried. */
+static const double shortening = 4.0, shortest_share = 1e-4;
+
+/* Steps after which the modes must agree; each costs about as much as an event. */
+enum { TIME_STEP_LIMIT = 10000 };
+
+/* True if the modes of a copy of the state agree with it. The copy, with its jumps, is then taken; else the modes stay. */
+static bool modes_agree(struct Instance *instance, double time, double *state) {
+  size_t size = lagrangian.state_count * sizeof *state, modes = lagrangian.switches->mode_count * sizeof(double);
+  double *copy = state + lagrangian.state_count;
+  double *mode = instance->parameter + lagrangian.parameter_count - lagrangian.switches->mode_count;
+  double *before = scratch_take(instance, SCRATCH_MODES, modes);
+  struct DeferredLog deferred;
+  bool changed;
+  if (before == NULL) return solver_is_out_of_memory(instance);
+  memcpy(copy, state, size);
+  memcpy(before, mode, modes);
+  log_defer(instance, &deferred);
+  bool agree = resolve(instance, time, copy, AT_CHANGE, 0, &changed) == NULL;
+  log_release(instance, &deferred);
+  if (agree) memcpy(state, copy, size);
+  else memcpy(mode, before, modes);
+  if (!agree) instance->parameter_constants_are_stale = true;
+  scratch_return(instance, SCRATCH_MODES);
+  return agree;
+}
+
+/* True if the state can be moved onto the constraints of the present modes. */
+static bool is_on_constraints(struct Instance *instance, double time) {
+  return evaluate_prepare(instance) == STATUS_DONE && solver_project(instance, time, instance->event_state) == NULL;
+}
+
+/* Warns once. longest: in s; to which time steps may grow. */
+static void report_steps(struct Instance *instance, double time, double longest) {
+  if (instance->reported_time_steps) return;
+  instance->reported_time_steps = true;
+  log_message(instance, STATUS_WARNING,
+              "time %g: events of contacts follow each other endlessly; time steps pass them, here and each further "
+              "time; they are at most %.2g s long, and velocities have errors of what accelerations change in them",
+              time, longest);
+}
+
+/* Takes a time step, or a shorter one if that has no impulses. Returns its length; 0 if none has. */
+static double take_time_step(struct Instance *instance, double time, double limit, double *share, double *longest) {
+  *share = fmin(fmax(growth * *share, first_share), 1.0);
+  for (; *share >= shortest_share; *share /= shortening) {
+    struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_CHANGE);
+    double length = lagrangian.switches->sliding_laws->time_step(&resolution, *share, limit, longest);
+    if (length > 0.0) return length;
+  }
+  return 0.0;
+}
+
+bool step_over_events(struct Instance *instance, double until, double end, double *share, double *time) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  double longest = 0.0;
+  bool has_events = switches->event_count > switches->sample_count;
+  if (switches->sliding_laws == NULL || has_events || instance->stops_at_events) return false;
+  if (switches->time_laws != NULL) end = fmin(end, next_sample(instance, *time));
+  for (int i = 0; i < TIME_STEP_LIMIT && *time < end; i++) {
+    double length = take_time_step(instance, *time, end - *time, share, &longest);
+    if (!(length > 0.0)) return false;
+    bool is_end = length >= end - *time;
+    *time = is_end ? end : *time + length;
+    if (!is_end && *time < until) continue;
+    /* At the end, the modes of the step itself have to do. */
+    if (!modes_agree(instance, *time, instance->event_state) && !(is_end && is_on_constraints(instance, *time)))
+      continue;
+    report_steps(instance, *time, longest);
+    return true;
+  }
+  return false;
+}

@@ -1,0 +1,144 @@
+/*
+ * Moreau's time stepping (J. J. Moreau: Numerical aspects of the sweeping process, Comput. Methods Appl. Mech. Eng. 177,
+ * 1999), with the gaps of D. E. Stewart and J. C. Trinkle (Int. J. Numer. Methods Eng. 39, 1996). In a step h all contacts
+ * and frictions together have the impulses p. With the accelerations a without them,
+ *
+ *   v' = v + h a + M^-1 J^T p,   q' = q + h q_dot(q, v'),
+ *
+ * where p and the rates u' = J v' fulfil the law of cone_search.c. A contact whose gap would close is struck, and has
+ * the rate -e u' behind. Of the others the gap may not close: their rates are u' + gap / h. So the step needs no modes, and
+ * passes any number of events.
+ */
+#include "nonsmooth/sliding/time_step.h"
+
+#include <math.h>
+
+#include "evaluation/evaluate.h"
+#include "evaluation/services.h"
+#include "nonsmooth/cones/cone_impulses.h"
+#include "nonsmooth/contacts/contact_impulses.h"
+#include "nonsmooth/contacts/impacts.h"
+
+/* Contacts take part whose gap could close in this many steps. */
+static const double reach = 4.0;
+
+/* Relative to the limit: a friction with a smaller impulse sticks. */
+static const double below_limit = 1e-9;
+
+/* Opens all contacts, and lets the frictions on them slide. */
+static void release_contacts(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  for (size_t i = 0; i < switches->contact_count; i++) set_contact(resolution, i, false);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    for (size_t k = 0; k < switches->contact_count; k++)
+      if (rests_on(switches, i, k)) set_friction(resolution, i, 1.0);
+}
+
+/* Selects the contacts that the step may close, with their frictions. Returns their number. */
+static size_t choose_near(struct Resolution *resolution, double length) {
+  const struct SwitchTable *switches = resolution->switches;
+  double fastest = 0.0;
+  size_t count = 0;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    fastest = fmax(fastest, fabs(contact_value(resolution, i, CONTACT_RATE)) +
+                                length * fabs(contact_value(resolution, i, CONTACT_ACCELERATION)));
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    bool is_near = contact_value(resolution, i, CONTACT_GAP) <= reach * length * fastest;
+    resolution->part[i] = is_near ? TAKES_PART : LEFT_OUT;
+    count += is_near ? 1 : 0;
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) *part_of_friction(resolution, i) = TAKES_PART;
+  return count;
+}
+
+/* Fills the rates of the law without impulses. */
+static void fill_rates(const struct Resolution *resolution, const struct ContactImpulses *impulses, double length) {
+  for (size_t row = 0; row < impulses->count; row++) {
+    size_t member = impulses->member[row];
+    if (row >= impulses->contact_count) {
+      size_t slot = friction_slot(resolution->switches, member, FRICTION_RATE);
+      impulses->rate[row] += length * resolution->value[slot];
+      continue;
+    }
+    double rate = impulses->rate[row] + length * contact_value(resolution, member, CONTACT_ACCELERATION);
+    double gap = fmax(contact_value(resolution, member, CONTACT_GAP), 0.0);
+    bool is_struck = gap + length * rate < 0.0;
+    double bounce = is_struck ? impact_restitution(resolution, member) * fmin(impulses->rate[row], 0.0) : gap / length;
+    impulses->rate[row] = rate + bounce;
+  }
+}
+
+/* Closes the contacts that press at the end of the step, and lets the frictions stick that are below their limits. */
+static void set_modes(struct Resolution *resolution, const struct ContactImpulses *impulses, const double *impulse) {
+  size_t contacts = impulses->contact_count;
+  for (size_t row = 0; row < contacts; row++)
+    if (impulse[row] > 0.0) set_contact(resolution, impulses->member[row], true);
+  for (size_t row = contacts; row < impulses->count; row++) {
+    size_t friction = impulses->member[row], rows = is_in_plane(resolution->switches, friction) ? 2 : 1;
+    double limit = 0.0, size = rows == 2 ? hypot(impulse[row], impulse[row + 1]) : fabs(impulse[row]);
+    for (size_t i = 0; i < contacts; i++) limit += impulses->coefficient[(row - contacts) * contacts + i] * impulse[i];
+    if (size < (1.0 - below_limit) * limit) set_friction(resolution, friction, 0.0);
+    row += rows - 1;
+  }
+}
+
+/* Moves the coordinates, and the states of the first order, with the velocities. False if rates do not exist. */
+static bool move_coordinates(struct Resolution *resolution, double length) {
+  double *rate = resolution->rounded;
+  size_t n = lagrangian.coordinate_count;
+  if (!solver_derivatives(resolution->instance, resolution->time, resolution->state, rate)) return false;
+  for (size_t i = 0; i < lagrangian.state_count; i++)
+    if (i < n || i >= 2 * n) resolution->state[i] += length * rate[i];
+  resolution->time += length;
+  return true;
+}
+
+/* Adds the accelerations and impulses of a step, and moves on. False if there are no impulses. */
+static bool take_impulses(struct Resolution *resolution, const struct ContactImpulses *impulses, double length,
+                          double *impulse) {
+  const double *acceleration = resolution_accelerations(resolution);
+  double *velocity = resolution->state + lagrangian.coordinate_count;
+  fill_rates(resolution, impulses, length);
+  if (!cone_impulses_find(resolution, impulses, impulses->rate, impulse)) return false;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += length * acceleration[i];
+  for (size_t row = 0; row < impulses->count; row++) impact_add(resolution, impulses, row, impulse[row]);
+  if (!move_coordinates(resolution, length)) return false;
+  set_modes(resolution, impulses, impulse);
+  return true;
+}
+
+/* Returns the time in which the accelerations change positions by the tolerance. */
+static double longest_time_step(const struct Resolution *resolution) {
+  const double *acceleration = resolution_accelerations(resolution);
+  double longest = INFINITY;
+  for (size_t i = 0; i < lagrangian.coordinate_count; i++) {
+    double change = solver_tolerance(resolution->instance) * scale_of(resolution->state, i);
+    longest = fmin(longest, sqrt(change / fabs(acceleration[i])));
+  }
+  return longest;
+}
+
+/* Takes a step from the modes of release_contacts(). False if it has no impulses. */
+static bool take_free_step(struct Resolution *resolution, double length) {
+  struct ContactImpulses impulses;
+  if (choose_near(resolution, length) < 2) return false; /* the events of a single contact can be found */
+  if (!contact_impulses_create(resolution, &impulses)) return false;
+  double *impulse = scratch_take(resolution->instance, SCRATCH_IMPACT, impulses.count * sizeof *impulse);
+  bool is_done = impulse != NULL && take_impulses(resolution, &impulses, length, impulse);
+  if (impulse == NULL) solver_is_out_of_memory(resolution->instance);
+  else scratch_return(resolution->instance, SCRATCH_IMPACT);
+  contact_impulses_free(resolution, &impulses);
+  return is_done;
+}
+
+double time_step(struct Resolution *resolution, double share, double limit, double *longest) {
+  resolution_keep_modes(resolution);
+  release_contacts(resolution);
+  if (resolution_evaluate(resolution)) {
+    *longest = longest_time_step(resolution);
+    double length = fmin(share * *longest, limit);
+    if (take_free_step(resolution, length)) return length;
+  }
+  resolution_restore_modes(resolution);
+  return 0.0;
+}
