@@ -302,9 +302,27 @@ void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const ch
                read[0], read[1]);
 }
 
+/* Counts the elements below one that have the name of an element, in a parent of equal name; *first: the first of them. */
+static size_t count_alike(xmlNodePtr below, xmlNodePtr node, xmlNodePtr *first) {
+  size_t count = 0;
+  for (xmlNodePtr child = below->children; child != NULL; child = child->next) {
+    if (child->type != XML_ELEMENT_NODE) continue;
+    bool is_alike = xmlStrEqual(child->name, node->name) && xmlStrEqual(below->name, node->parent->name);
+    if (is_alike && *first == NULL) *first = child;
+    count += (is_alike ? 1 : 0) + count_alike(child, node, first);
+  }
+  return count;
+}
+
 void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy) {
-  mjcf_error(mjcf, node, "<%s> is not read, and would change the motion; expected %s", (const char *)node->name,
-             remedy);
+  xmlNodePtr first = NULL;
+  size_t others = count_alike(mjcf->root, node, &first) - 1; /* the tree contains the element itself */
+  if (first != node) return;
+  const char *number = others > 0 ? format_text(", as are %zu other%s in <%s>", others, others > 1 ? "s" : "",
+                                                (const char *)node->parent->name)
+                                  : "";
+  mjcf_error(mjcf, node, "<%s> is not read%s, and would change the motion; expected %s", (const char *)node->name,
+             number, remedy);
 }
 
 void mjcf_reject(struct Mjcf *mjcf, xmlNodePtr node, const char *names) {

@@ -115,7 +115,10 @@ double make_unit(double vector[3]);
 /* Sets the limits of `range`, if the attribute `is_limited` or its default says that they apply; else NAN. */
 void mjcf_limits(struct Mjcf *mjcf, xmlNodePtr node, const char *range, const char *is_limited, double limits[2]);
 
-/* Reports an element that is not supported and would change the motion. remedy: completes "expected ...". */
+/*
+ * Reports an element that is not supported and would change the motion, the first of its name in parents of one name.
+ * remedy: completes "expected ...".
+ */
 void mjcf_report_unknown(struct Mjcf *mjcf, xmlNodePtr node, const char *remedy);
 
 /* Reports attributes that are not supported and would change the motion, unless they are 0, false, none or missing. */
