@@ -38,10 +38,7 @@ double cones_coefficient(const struct Cones *cones, size_t row, size_t deciding)
 }
 
 double cones_limit(const struct Cones *cones, size_t row) {
-  const struct ContactImpulses *impulses = cones->impulses;
-  double limit = impulses->given != NULL ? impulses->given[row - impulses->contact_count] : 0.0;
-  for (size_t i = 0; i < impulses->deciding_count; i++) limit += cones_coefficient(cones, row, i) * cones->impulse[i];
-  return limit;
+  return limit_with(cones->impulses, cones->impulse, row);
 }
 
 size_t cones_row_count(const struct Cones *cones, size_t row) {

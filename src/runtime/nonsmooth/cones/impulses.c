@@ -13,6 +13,13 @@ static const double least_gain = 1e-13;
  */
 static const double differing_share = 1e-8;
 
+double limit_with(const struct ContactImpulses *impulses, const double *impulse, size_t row) {
+  size_t friction = row - impulses->contact_count, count = impulses->deciding_count;
+  double limit = impulses->given != NULL ? impulses->given[friction] : 0.0;
+  for (size_t i = 0; i < count; i++) limit += impulses->coefficient[friction * count + i] * impulse[i];
+  return limit;
+}
+
 double change_of_rate(const struct ContactImpulses *impulses, const double *impulse, size_t row) {
   double change = 0.0;
   for (size_t j = 0; j < impulses->count; j++) change += impulses->delassus[row * impulses->count + j] * impulse[j];

@@ -21,6 +21,9 @@ struct ContactImpulses {
   void *block;
 };
 
+/* Returns the friction limit of a row with impulses. */
+double limit_with(const struct ContactImpulses *impulses, const double *impulse, size_t row);
+
 /* Returns the change of the rate of a row by impulses, of W p. */
 double change_of_rate(const struct ContactImpulses *impulses, const double *impulse, size_t row);
 

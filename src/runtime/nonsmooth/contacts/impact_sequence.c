@@ -83,8 +83,8 @@ static int impact_limit(const struct Resolution *resolution) {
 }
 
 /*
- * True if a contact that touches would bounce visibly from an impact at a speed. After more impacts than contacts, bodies
- * pass impulses to and fro, and others press the contacts together.
+ * True if a contact that touches would bounce visibly from an impact at a speed. Once an event has more impacts than
+ * touching contacts, bodies exchange impulses repeatedly, and others press the contacts together.
  */
 static bool any_bounces(const struct Resolution *resolution, double speed) {
   size_t contacts = 0;

@@ -226,10 +226,8 @@ static bool find_impulses_of_step(struct ShortStep *step) {
 /* Returns the mode of a friction along a line in a step, given its row: 0 if it sticks, else the sign of its velocity. */
 static double mode_in_step(const struct ShortStep *step, size_t row) {
   const struct ContactImpulses *impulses = &step->impulses;
-  size_t contacts = impulses->contact_count;
-  double limit = 0.0, impulse = step->impulse[row], sign = impulse != 0.0 ? -impulse : impulses->rate[row];
-  for (size_t i = 0; i < contacts; i++)
-    limit += impulses->coefficient[(row - contacts) * contacts + i] * step->impulse[i];
+  double impulse = step->impulse[row], sign = impulse != 0.0 ? -impulse : impulses->rate[row];
+  double limit = limit_with(impulses, step->impulse, row);
   return fabs(impulse) < (1.0 - at_limit) * limit ? 0.0 : copysign(1.0, sign);
 }
 

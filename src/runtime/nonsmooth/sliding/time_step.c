@@ -75,9 +75,8 @@ static void set_modes(struct Resolution *resolution, const struct ContactImpulse
     if (impulse[row] > 0.0) set_contact(resolution, impulses->member[row], true);
   for (size_t row = contacts; row < impulses->count; row++) {
     size_t friction = impulses->member[row], rows = is_in_plane(resolution->switches, friction) ? 2 : 1;
-    double limit = 0.0, size = rows == 2 ? hypot(impulse[row], impulse[row + 1]) : fabs(impulse[row]);
-    for (size_t i = 0; i < contacts; i++) limit += impulses->coefficient[(row - contacts) * contacts + i] * impulse[i];
-    if (size < (1.0 - below_limit) * limit) set_friction(resolution, friction, 0.0);
+    double size = rows == 2 ? hypot(impulse[row], impulse[row + 1]) : fabs(impulse[row]);
+    if (size < (1.0 - below_limit) * limit_with(impulses, impulse, row)) set_friction(resolution, friction, 0.0);
     row += rows - 1;
   }
 }
