@@ -173,6 +173,7 @@ struct ContactMetadata {
 struct FrictionMetadata {
   size_t mode;       /* sign of the velocity while it slides, 0 while it sticks */
   size_t reported;   /* the reported mode: also 0 while other constraints keep the velocity at 0 */
+  size_t share;      /* along a line: the share of its sliding force beside that of its mode or constraint; else mode */
   size_t constraint; /* active while it sticks */
   const char *name;
   bool is_given;         /* its velocity is prescribed: it never sticks, and its mode is that of a branch */

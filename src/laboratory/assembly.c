@@ -191,7 +191,7 @@ static struct SwitchTable *switches_of(const struct Program *program) {
   *switches = switch_metadata_of(program);
   if (switches->contact_count > 0) switches->contact_laws = &contact_laws;
   if (switches->friction_count > 0)
-    switches->friction_laws = switches->plane_count > 0 ? &plane_friction_laws : &friction_laws;
+    switches->friction_laws = switches_need_cone_path(switches) ? &plane_friction_laws : &friction_laws;
   if (switches_need_cone_path(switches)) switches->cone_path = &cone_path;
   if (switches->rests_on != NULL) switches->sliding_laws = &sliding_laws;
   if (switches->resting_count > 0) switches->find_resting = resting_find;

@@ -143,7 +143,8 @@ static Node stiction_margin(struct Graph *graph, const struct Friction *friction
 static Node indicator_of_friction(const struct Model *model, const struct Friction *friction) {
   struct Graph *graph = model->graph;
   if (friction->is_given) return ONE; /* its branch has the indicator */
-  Node force = model->unknowns.forces[friction->constraint];
+  Node share = multiply(graph, friction->share, friction->sliding);
+  Node force = add(graph, model->unknowns.forces[friction->constraint], share);
   Node left = stiction_margin(graph, friction, force);
   Node along = multiply(graph, friction->mode, friction->velocity);
   return choose_node(graph, power_number(graph, friction->mode, 2.0), along, left);
@@ -462,14 +463,16 @@ Node without_branches(const struct Model *model, Node node) {
   return node;
 }
 
-/* Replaces the forces that contacts carry by 0: pages show the whole force of a contact as one symbol. */
+/* Replaces the forces beside constraints by 0: pages show the whole force of a contact or a friction as one symbol. */
 static Node without_carried_forces(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
-  if (!has_planes(switches)) return node;
+  if (switches->contact_count == 0) return node;
   Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->contact_count; i++)
     if (switches->contacts[i].carried != ZERO) replacements[graph->vertices[switches->contacts[i].carried].left] = ZERO;
+  for (size_t i = 0; i < switches->friction_count; i++)
+    if (switches->frictions[i].share != ZERO) replacements[graph->vertices[switches->frictions[i].share].left] = ZERO;
   substitute(graph, &node, 1, replacements, &node);
   return node;
 }

@@ -84,7 +84,10 @@ static Node size_along_line(struct Graph *graph, const struct Friction *friction
 }
 
 Node sliding_force(struct Graph *graph, const struct Friction *friction) {
-  if (friction->plane.axis == NO_PLANE) return multiply(graph, friction->mode, size_along_line(graph, friction));
+  if (friction->plane.axis == NO_PLANE) {
+    Node share = friction->is_given ? friction->mode : add(graph, friction->mode, friction->share);
+    return multiply(graph, share, size_along_line(graph, friction));
+  }
   return multiply(graph, friction->sliding, direction_in_plane(graph, friction));
 }
 

@@ -25,7 +25,7 @@ struct Branch {
 struct Contact {
   size_t constraint; /* index among the model's constraints */
   Node mode, gap, restitution;
-  Node carried; /* with friction in a plane, a mode: the part of the force that acts beside the constraint; else ZERO */
+  Node carried; /* with frictions, a mode: the part of the force that acts beside the constraint; else ZERO */
 };
 
 /*
@@ -55,6 +55,8 @@ struct FrictionPlane {
 struct Friction {
   size_t constraint; /* index among the model's constraints */
   Node mode, reported, velocity, sliding, stiction, sliding_back, stiction_back;
+  Node
+      share; /* along a line beside contacts, a mode: the share of its sliding force that acts while it sticks; else 0 */
   bool is_given;
   bool has_static_limit; /* the stiction differs, and other frictions or constraints may keep the velocity at 0 */
   struct FrictionPlane plane;

@@ -86,7 +86,7 @@ static void write_runtime(FILE *file, const struct Program *program) {
   }
   if (switches->friction_count > 0) include_room(file, "nonsmooth/frictions");
   if (switches->contact_count > 0 && switches->friction_count > 0) include_room(file, "nonsmooth/sliding");
-  if (has_planes(switches)) include_room(file, "nonsmooth/planes");
+  if (has_planes(switches) || (switching != NULL && switching->rests != NULL)) include_room(file, "nonsmooth/planes");
   if (switches->resting_count > 0) include_room(file, "nonsmooth/rests");
   if (switching != NULL && switching->timed_count > 0) include_room(file, "timing");
   fputs("#endif\n", file);

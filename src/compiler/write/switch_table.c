@@ -23,9 +23,10 @@ static const struct ElementType
     contacts = STRUCT_TYPE(ContactMetadata, FIELD(ContactMetadata, mode), FIELD(ContactMetadata, constraint),
                            FIELD(ContactMetadata, carried), FIELD(ContactMetadata, name),
                            FIELD(ContactMetadata, restitution_is_constant)),
-    frictions = STRUCT_TYPE(FrictionMetadata, FIELD(FrictionMetadata, mode), FIELD(FrictionMetadata, reported),
-                            FIELD(FrictionMetadata, constraint), FIELD(FrictionMetadata, name),
-                            FIELD(FrictionMetadata, is_given), FIELD(FrictionMetadata, has_static_limit)),
+    frictions =
+        STRUCT_TYPE(FrictionMetadata, FIELD(FrictionMetadata, mode), FIELD(FrictionMetadata, reported),
+                    FIELD(FrictionMetadata, share), FIELD(FrictionMetadata, constraint), FIELD(FrictionMetadata, name),
+                    FIELD(FrictionMetadata, is_given), FIELD(FrictionMetadata, has_static_limit)),
     planes = STRUCT_TYPE(PlaneMetadata, FIELD(PlaneMetadata, along), FIELD(PlaneMetadata, slip_direction),
                          FIELD(PlaneMetadata, lower), FIELD(PlaneMetadata, upper)),
     resting = STRUCT_TYPE(RestingMetadata, NAMED_FIELD(RestingMetadata, kind, resting_kinds),
@@ -68,7 +69,7 @@ static void write_functions(FILE *file, const struct Program *program, const str
 }
 
 static const char *friction_laws_of(const struct SwitchTable *metadata) {
-  return metadata->plane_count > 0 ? "plane_friction_laws" : "friction_laws";
+  return switches_need_cone_path(metadata) ? "plane_friction_laws" : "friction_laws";
 }
 
 static void declare_laws(FILE *file, const struct SwitchTable *metadata) {

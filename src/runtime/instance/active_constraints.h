@@ -14,6 +14,12 @@ static inline double carried_force(const struct Instance *instance, size_t conta
   return metadata->carried != metadata->mode ? instance->parameter[metadata->carried] : 0.0;
 }
 
+/* Returns the share of its sliding force that a friction along a line carries beside its constraint. */
+static inline double carried_share(const struct Instance *instance, size_t friction) {
+  const struct FrictionMetadata *metadata = &lagrangian.switches->frictions[friction];
+  return metadata->share != metadata->mode ? instance->parameter[metadata->share] : 0.0;
+}
+
 /* True if the friction sticks. */
 static inline bool friction_holds(const struct Instance *instance, size_t friction) {
   return instance->parameter[lagrangian.switches->frictions[friction].mode] == 0.0;

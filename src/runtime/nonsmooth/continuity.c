@@ -5,6 +5,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "instance/active_constraints.h"
 #include "instance/projection.h"
 
 /* Changes below this share of the scales of the state may be rounding errors. */
@@ -30,9 +31,16 @@ static bool release_moved(struct Resolution *resolution) {
   return evaluate_prepare(resolution->instance) == STATUS_DONE;
 }
 
+/* True if a friction that sticks has reached its limit. It may creep within the solver's error, against its slip. */
+static bool friction_yields(const struct Resolution *resolution) {
+  size_t first = friction_indicator(resolution->switches, 0);
+  return resolution->occasion == AT_EVENT && resolution->indicator >= first &&
+         friction_holds(resolution->instance, resolution->indicator - first);
+}
+
 const char *continuity_begin(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0;
+  bool can_matter = switches->branch_count > 0 || switches->assignment_count > 0 || friction_yields(resolution);
   if (lagrangian.constraints.projection == NULL || !can_matter) return NULL;
   if (evaluate_prepare(resolution->instance) != STATUS_DONE) return constraints_not_kept;
   const struct Projection *laws = lagrangian.constraints.projection;

@@ -210,7 +210,11 @@ void set_friction(struct Resolution *resolution, size_t friction, double mode) {
   const struct SwitchTable *switches = resolution->switches;
   size_t plane = plane_of(switches, friction);
   if (plane < switches->plane_count) switches->friction_laws->set_plane(resolution, plane, mode != 0.0);
-  else resolution_set_mode(resolution, switches->frictions[friction].mode, mode);
+  else {
+    const struct FrictionMetadata *metadata = &switches->frictions[friction];
+    resolution_set_mode(resolution, metadata->mode, mode);
+    if (metadata->share != metadata->mode) resolution_set_mode(resolution, metadata->share, 0.0);
+  }
 }
 
 static double *modes_of(const struct Resolution *resolution) {

@@ -47,12 +47,14 @@ static const struct FrictionMetadata *frictions_of(const struct Program *program
   struct FrictionMetadata *metadata = allocate(switches->friction_count, sizeof *metadata);
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct Friction *friction = &switches->frictions[i];
-    metadata[i] = (struct FrictionMetadata){mode_index(program, friction->mode),
-                                            mode_index(program, friction->reported),
-                                            friction->constraint,
-                                            name_of(program, friction->constraint),
-                                            friction->is_given,
-                                            friction->has_static_limit && !friction->is_given};
+    metadata[i] =
+        (struct FrictionMetadata){mode_index(program, friction->mode),
+                                  mode_index(program, friction->reported),
+                                  mode_index(program, friction->share != ZERO ? friction->share : friction->mode),
+                                  friction->constraint,
+                                  name_of(program, friction->constraint),
+                                  friction->is_given,
+                                  friction->has_static_limit && !friction->is_given};
   }
   return metadata;
 }

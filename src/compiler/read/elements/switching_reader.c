@@ -152,10 +152,15 @@ void declare_contact(struct Reader *reader, xmlNodePtr node) {
               "between=\"...\" and=\"...\"");
 }
 
-/* Gives contacts a force beside their constraints if there are frictions in planes, whose forces depend on theirs. */
+/* Gives contacts, and frictions along lines, a force beside their constraints: frictions may share loads with others. */
 static void declare_carried_forces(struct Reader *reader) {
   struct Switches *switches = &reader->model->switches;
-  if (!has_planes(switches)) return;
+  if (switches->friction_count == 0 || (switches->contact_count == 0 && !has_planes(switches))) return;
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    struct Friction *friction = &switches->frictions[i];
+    if (friction->plane.axis == NO_PLANE)
+      friction->share = new_mode(reader, reader->model->constraints.items[friction->constraint].name, "share");
+  }
   for (size_t i = 0; i < switches->contact_count; i++) {
     struct Contact *contact = &switches->contacts[i];
     contact->carried = new_mode(reader, reader->model->constraints.items[contact->constraint].name, "carried");

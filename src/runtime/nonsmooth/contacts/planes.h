@@ -12,6 +12,14 @@ static inline bool friction_sticks(const struct Resolution *resolution, size_t f
   return friction_holds(resolution->instance, friction);
 }
 
+/* Returns the force of a friction along a line that sticks. */
+static inline double force_on_line(const struct Resolution *resolution, size_t friction) {
+  size_t constraint = resolution->switches->frictions[friction].constraint,
+         sliding = friction_slot(resolution->switches, friction, FRICTION_FORCE);
+  return resolution->acceleration[lagrangian.coordinate_count + constraint] +
+         carried_share(resolution->instance, friction) * resolution->value[sliding];
+}
+
 /* Returns the mode of a friction in a plane. */
 static inline enum PlaneMode plane_mode(const struct Resolution *resolution, const struct PlaneMetadata *plane) {
   return (enum PlaneMode)mode_of(resolution, resolution->switches->frictions[plane->along].mode);

@@ -54,8 +54,7 @@ struct FrictionState {
 static void take_direction(const struct Resolution *resolution, size_t friction, struct FrictionState *state) {
   size_t slot = friction_slot(resolution->switches, friction, 0);
   const double *value = &resolution->value[slot], *error_bound = &resolution->error_bound[slot];
-  double force =
-      resolution->acceleration[lagrangian.coordinate_count + resolution->switches->frictions[friction].constraint];
+  double force = force_on_line(resolution, friction);
   double middle = 0.5 * (value[FRICTION_STICTION] - value[FRICTION_STICTION_BACK]);
   state->direction = state->mode != 0.0 ? state->mode : force > middle ? 1.0 : -1.0;
   size_t stiction = state->direction < 0.0 ? FRICTION_STICTION_BACK : FRICTION_STICTION;
@@ -159,6 +158,11 @@ static double mode_from_rest(const struct Resolution *resolution, const struct F
   return is_overcome(resolution, state) ? state->direction : 0.0;
 }
 
+bool friction_rests(const struct Resolution *resolution, size_t friction) {
+  struct FrictionState state = friction_state(resolution, friction);
+  return state.mode == 0.0 || !state.is_moving;
+}
+
 bool friction_is_overcome(const struct Resolution *resolution, size_t friction) {
   if (is_in_plane(resolution->switches, friction) || resolution->switches->frictions[friction].is_given) return false;
   struct FrictionState state = friction_state(resolution, friction);
@@ -209,7 +213,7 @@ void frictions_report_missing(const struct Resolution *resolution, const char *m
 void friction_switch(struct Resolution *resolution, size_t friction, double mode) {
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   bool is_constrained = false;
-  resolution_set_mode(resolution, metadata->mode, mode);
+  set_friction(resolution, friction, mode);
   if (!metadata->has_static_limit || mode == 0.0) return;
   if (!frictions_find_constrained(resolution, friction, &is_constrained)) return; /* the next evaluation says why */
   resolution_set_mode(resolution, metadata->reported, is_constrained ? 0.0 : mode);
@@ -226,7 +230,7 @@ static bool stick_again(struct Resolution *resolution) {
     if (!switches->frictions[i].has_static_limit) continue;
     struct FrictionState state = friction_state(resolution, i);
     if (state.mode == 0.0 || state.is_moving) continue;
-    resolution_set_mode(resolution, switches->frictions[i].mode, 0.0);
+    set_friction(resolution, i, 0.0);
     changed = true;
   }
   resolution->has_stuck_again = true;
@@ -255,7 +259,7 @@ static bool stick_at_start(struct Resolution *resolution) {
     struct FrictionState state = friction_state(resolution, i);
     if (!state.is_first || state.mode == 0.0 || state.is_moving || state.has_no_force) continue;
     resolution->flips[friction_indicator(resolution->switches, i)]++;
-    resolution_set_mode(resolution, resolution->switches->frictions[i].mode, 0.0);
+    set_friction(resolution, i, 0.0);
     changed = true;
   }
   return changed;

@@ -30,6 +30,9 @@ void frictions_report_missing(const struct Resolution *resolution, const char *m
  */
 bool frictions_explain_jam(struct Resolution *resolution, size_t branch);
 
+/* True if a friction along a line sticks, or slides without a velocity. */
+bool friction_rests(const struct Resolution *resolution, size_t friction);
+
 /* True if a friction sticks, and needs more than its stiction. False in planes, and for prescribed velocities. */
 bool friction_is_overcome(const struct Resolution *resolution, size_t friction);
 

@@ -50,7 +50,7 @@ static size_t reverse_moving(struct Resolution *resolution) {
   for (size_t i = 0; i < switches->friction_count && resolution->occasion == AT_START; i++) {
     double direction = direction_of(resolution, i);
     if (!(direction * mode_of(resolution, switches->frictions[i].mode) < 0.0)) continue;
-    resolution_set_mode(resolution, switches->frictions[i].mode, direction);
+    set_friction(resolution, i, direction);
     switched = i;
   }
   return switched;
@@ -99,7 +99,7 @@ static void set_combination(struct Resolution *resolution, size_t combination) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->friction_count; i++) {
     if (*part_of_friction(resolution, i) == LEFT_OUT) continue;
-    resolution_set_mode(resolution, switches->frictions[i].mode, (double)(combination % 3) - 1.0);
+    set_friction(resolution, i, (double)(combination % 3) - 1.0);
     combination /= 3;
   }
   for (size_t i = 0; i < switches->branch_count; i++) {
@@ -114,7 +114,7 @@ static bool friction_agrees(const struct Resolution *resolution, size_t friction
   const double *error_bound = &resolution->error_bound[friction_slot(resolution->switches, friction, 0)];
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   double mode = mode_of(resolution, metadata->mode), rounding = resolution->force_error_bound[friction];
-  double force = resolution->acceleration[lagrangian.coordinate_count + metadata->constraint];
+  double force = force_on_line(resolution, friction);
   if (mode != 0.0) return mode * value[FRICTION_RATE] > error_bound[FRICTION_RATE];
   return force <= value[FRICTION_STICTION] + error_bound[FRICTION_STICTION] + rounding &&
          -force <= value[FRICTION_STICTION_BACK] + error_bound[FRICTION_STICTION_BACK] + rounding;

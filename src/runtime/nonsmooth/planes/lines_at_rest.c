@@ -14,8 +14,8 @@ static bool line_rests(const struct Resolution *resolution, size_t friction) {
   const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
   bool is_symmetric =
       value[FRICTION_STICTION] == value[FRICTION_STICTION_BACK] && value[FRICTION_FORCE] == value[FRICTION_FORCE_BACK];
-  bool rests = mode_of(resolution, metadata->mode) == 0.0 || mode_of(resolution, metadata->reported) == 0.0;
-  return rests && is_symmetric && !metadata->is_given && !is_in_plane(resolution->switches, friction);
+  if (!is_symmetric || metadata->is_given || is_in_plane(resolution->switches, friction)) return false;
+  return mode_of(resolution, metadata->reported) == 0.0 || friction_rests(resolution, friction);
 }
 
 void lines_choose(const struct Resolution *resolution) {
@@ -28,24 +28,35 @@ void lines_choose(const struct Resolution *resolution) {
   }
 }
 
+static void set_line(struct Resolution *resolution, size_t friction, double mode, double share) {
+  resolution_set_mode(resolution, resolution->switches->frictions[friction].mode, mode);
+  resolution_set_mode(resolution, resolution->switches->frictions[friction].share, share);
+}
+
+void line_carry(struct Resolution *resolution, size_t friction, double share) {
+  set_line(resolution, friction, 0.0, share);
+}
+
+void line_release(struct Resolution *resolution, size_t friction, double share) {
+  set_line(resolution, friction, 1.0, share - 1.0);
+}
+
 void lines_stick(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++) {
     if (is_in_plane(resolution->switches, i) || *part_of_friction(resolution, i) == LEFT_OUT) continue;
     if (*part_of_friction(resolution, i) == IS_OVERCOME)
       resolution->flips[friction_indicator(resolution->switches, i)]++;
-    resolution_set_mode(resolution, resolution->switches->frictions[i].mode, 0.0);
+    set_friction(resolution, i, 0.0);
   }
 }
 
 /* True if a friction along a line that sticks needs more than its stiction. */
 static bool line_exceeds(const struct Resolution *resolution, size_t friction, double rounding) {
-  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   enum Part part = *part_of_friction(resolution, friction);
   if (is_in_plane(resolution->switches, friction) || part == LEFT_OUT || !friction_sticks(resolution, friction))
     return false;
   double stiction = resolution->value[friction_slot(resolution->switches, friction, FRICTION_STICTION)];
-  double force = resolution->acceleration[lagrangian.coordinate_count + metadata->constraint];
-  return fabs(force) > stiction + (part == IS_OVERCOME ? -rounding : rounding);
+  return fabs(force_on_line(resolution, friction)) > stiction + (part == IS_OVERCOME ? -rounding : rounding);
 }
 
 bool lines_exceed(const struct Resolution *resolution, double rounding) {
@@ -62,17 +73,15 @@ void lines_take(struct RestForces *forces) {
   }
 }
 
-bool lines_act(struct RestForces *forces) {
+bool lines_let_overcome_slip(struct RestForces *forces) {
   struct Resolution *resolution = forces->resolution;
   double rounding = share_at_limit * largest_stiction(resolution);
-  for (size_t row = forces->lines; row < forces->n;) {
-    size_t friction = forces->impulses.member[row++];
+  bool any = false;
+  for (size_t row = forces->lines; row < forces->n; row++) {
+    size_t friction = forces->impulses.member[row];
     if (!line_exceeds(resolution, friction, rounding)) continue;
-    size_t constraint = resolution->switches->frictions[friction].constraint;
-    double force = resolution->acceleration[lagrangian.coordinate_count + constraint];
-    friction_switch(resolution, friction, force < 0.0 ? -1.0 : 1.0);
-    if (!plane_evaluate(resolution)) return false;
-    row = forces->lines;
+    friction_switch(resolution, friction, force_on_line(resolution, friction) < 0.0 ? -1.0 : 1.0);
+    any = true;
   }
-  return true;
+  return !any || plane_evaluate(resolution);
 }

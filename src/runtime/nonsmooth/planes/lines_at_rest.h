@@ -1,13 +1,17 @@
-/*
- * Frictions along lines beside those in planes at rest. Their forces are found together (rest_forces.c). They carry no
- * given force: those that would exceed their limits act with these.
- */
+/* Frictions along lines at rest. Their forces are found together with those in planes (rest_forces.c). */
 #pragma once
 
 #include "nonsmooth/planes/rest_forces.h"
 
 /* Sets the part of each friction along a line. */
 void lines_choose(const struct Resolution *resolution);
+
+/*
+ * Lets a friction stick that carries a share of its sliding force; its constraint carries the rest of the load. With
+ * line_release() it has the force of this share without a constraint.
+ */
+void line_carry(struct Resolution *resolution, size_t friction, double share);
+void line_release(struct Resolution *resolution, size_t friction, double share);
 
 /* Lets those that take part stick. */
 void lines_stick(struct Resolution *resolution);
@@ -18,8 +22,5 @@ bool lines_exceed(const struct Resolution *resolution, double rounding);
 /* Sets their modes by the solution: those that slip push against their motion, the others stick. */
 void lines_take(struct RestForces *forces);
 
-/*
- * Lets frictions act with their limits at rest, one after another, as long as one exceeds its own. The forces of those
- * that stick are shared by least norm. False if accelerations do not exist.
- */
-bool lines_act(struct RestForces *forces);
+/* Lets those slip that still need more than their stiction, as within rounding. False if accelerations do not exist. */
+bool lines_let_overcome_slip(struct RestForces *forces);

@@ -7,8 +7,8 @@
  *
  * Each round makes one change, or one to each of several frictions. A friction may switch more than TOGETHER_LIMIT
  * times, or no forces may be found while the contacts stay closed. Then the forces of contacts and frictions are solved
- * for together, at most once in an event resolution. After that a short step is tried (end_slip.h). Beyond
- * FRICTION_FLIP_LIMIT switches the motion ends with a message.
+ * for together, at most once in an event resolution. Beyond SHORT_STEP_LIMIT switches a short step is tried (end_slip.h).
+ * If that fails, the motion ends with a message.
  */
 #include <math.h>
 #include <string.h>
@@ -117,7 +117,7 @@ static size_t find_flipping(const struct Resolution *resolution, double often) {
 
 /* True if a friction in a plane rests. */
 static bool any_rests(const struct Resolution *resolution) {
-  bool any = false;
+  bool any = resolution->switches->rests_on != NULL;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     any |= state.mode == PLANE_STICKS && !state.is_given;
@@ -153,11 +153,8 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
 
 /* Finds the modes of frictions that keep switching. False if none does, or none are found. */
 static bool end_round_trips(struct Resolution *resolution) {
-  size_t flipping = find_flipping(resolution, TOGETHER_LIMIT);
-  if (flipping == resolution->switches->friction_count) return false;
-  double flips = resolution->flips[friction_indicator(resolution->switches, flipping)];
-  return plane_rests_find_with_contacts(resolution) ||
-         (fmod(flips, SHORT_STEP_LIMIT) == 0.0 && resolution_ends_slip(resolution));
+  return find_flipping(resolution, TOGETHER_LIMIT) < resolution->switches->friction_count &&
+         plane_rests_find_with_contacts(resolution);
 }
 
 static const char *act(struct Resolution *resolution, bool *again) {
@@ -166,7 +163,7 @@ static const char *act(struct Resolution *resolution, bool *again) {
   if (!*again) problem = frictions_act_beside(resolution, any_rests(resolution), again);
   if (problem == NULL && !*again && end_round_trips(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
-  size_t flipping = find_flipping(resolution, FRICTION_FLIP_LIMIT);
+  size_t flipping = find_flipping(resolution, SHORT_STEP_LIMIT);
   if (problem != NULL || flipping == resolution->switches->friction_count) return problem;
   *again = resolution_ends_slip(resolution);
   return *again ? NULL : frictions_report_inconsistent(resolution, flipping);

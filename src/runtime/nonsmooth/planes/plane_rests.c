@@ -253,7 +253,8 @@ static bool take_rests(struct RestForces *forces) {
   if (!plane_evaluate(forces->resolution)) return false;
   bool has_contacts = forces->impulses.contact_count > 0;
   if (!has_contacts && all_stick(forces->resolution)) return true;
-  return carried_forces_take(forces) && lines_act(forces) && let_overcome_slip(forces) && release_weak(forces);
+  return carried_forces_take(forces) && lines_let_overcome_slip(forces) && let_overcome_slip(forces) &&
+         release_weak(forces);
 }
 
 /* Lets frictions without kinetic friction slip if they need more than their stiction. */

@@ -17,6 +17,7 @@
 #include "evaluation/services.h"
 #include "nonsmooth/cones/cone_impulses.h"
 #include "nonsmooth/cones/cones.h"
+#include "nonsmooth/planes/lines_at_rest.h"
 #include "support/arena.h"
 
 /* Relative to the largest acceleration: smaller ones are rounding errors. */
@@ -36,8 +37,8 @@ static const double trial_share = 0.1;
 
 double largest_stiction(const struct Resolution *resolution) {
   double largest = 0.0;
-  for (size_t i = 0; i < resolution->switches->plane_count; i++)
-    largest = fmax(largest, plane_state(resolution, i).stiction);
+  for (size_t i = 0; i < resolution->switches->friction_count; i++)
+    largest = fmax(largest, resolution->value[friction_slot(resolution->switches, i, FRICTION_STICTION)]);
   return largest;
 }
 
@@ -122,22 +123,13 @@ static double limit_of_row(const struct RestForces *forces, size_t row, size_t k
   return forces->resolution->value[friction_slot(forces->resolution->switches, forces->impulses.member[row], kind)];
 }
 
-static bool row_is_of_line(const struct RestForces *forces, size_t row) {
-  return row >= forces->lines;
-}
-
-/*
- * Lets the force of a row change by a share of its unit. That of a friction is its kinetic one, against its direction;
- * one along a line slides forwards meanwhile, with its force.
- */
+/* Lets the force of a row change by a share of its unit. That of a friction is its kinetic one, against its direction. */
 static void set_share(const struct RestForces *forces, size_t row, double share) {
   struct Resolution *resolution = forces->resolution;
   size_t member = forces->impulses.member[row];
   if (row_is_of_contact(forces, row)) contact_press(resolution, member, (1.0 + share) * forces->pressure);
-  else if (row_is_of_line(forces, row)) {
-    resolution_set_mode(resolution, resolution->switches->frictions[member].mode, 1.0 + share);
-    resolution_set_mode(resolution, resolution->switches->frictions[member].reported, 1.0);
-  } else {
+  else if (row_is_of_line(forces, row)) line_release(resolution, member, share);
+  else {
     struct PlaneState state = state_of_row(forces, row);
     resolution_set_mode(resolution, state.metadata->slip_direction[member - state.metadata->along], share);
   }
@@ -146,7 +138,7 @@ static void set_share(const struct RestForces *forces, size_t row, double share)
 /* Returns the force of a row in the last evaluation, with this share. */
 static double force_with_share(const struct RestForces *forces, size_t row, double share) {
   if (row_is_of_contact(forces, row)) return (1.0 + share) * forces->pressure;
-  return -(row_is_of_line(forces, row) ? 1.0 + share : share) * limit_of_row(forces, row, FRICTION_FORCE);
+  return -share * limit_of_row(forces, row, FRICTION_FORCE);
 }
 
 /* Returns the acceleration of a row in the last evaluation. */
@@ -156,29 +148,9 @@ static double acceleration_of_row(const struct RestForces *forces, size_t row) {
   return forces->resolution->value[friction_slot(forces->resolution->switches, member, FRICTION_RATE)];
 }
 
-/* Returns the force of a row with which the functions are read first. Contacts press, and frictions along lines slide. */
-static double first_force(const struct RestForces *forces, size_t row) {
-  if (row_is_of_contact(forces, row)) return forces->pressure;
-  return row_is_of_line(forces, row) ? -forces->given_kinetic[friction_of_row(forces, row)] : 0.0;
-}
-
-/* Adds share times the effect of a unit force in a column to the functions in another column, or to those without forces. */
-static void add_effect(struct RestForces *forces, size_t of, double share, double *acceleration, double *stiction,
-                       double *kinetic, size_t stride) {
-  size_t n = forces->n;
-  for (size_t row = 0; row < n; row++) {
-    acceleration[row * stride] += share * forces->impulses.delassus[row * n + of];
-    if (row_is_of_contact(forces, row)) continue;
-    size_t friction = friction_of_row(forces, row);
-    stiction[friction * stride] += share * forces->stiction[friction * n + of];
-    kinetic[friction * stride] += share * forces->kinetic[friction * n + of];
-  }
-}
-
 /*
- * Fills the derivatives by the force of one row. Frictions along lines change theirs, too, if these follow from contacts;
- * their columns are filled first. False if accelerations do not exist, or the friction has no force because that of its
- * contact is 0 without frictions.
+ * Fills the derivatives by the force of one row. False if accelerations do not exist, or the friction has no force
+ * because that of its contact is 0 without frictions.
  */
 static bool fill_column(struct RestForces *forces, size_t column) {
   size_t n = forces->n;
@@ -186,7 +158,7 @@ static bool fill_column(struct RestForces *forces, size_t column) {
          *kinetic = forces->kinetic + column;
   set_share(forces, column, trial_share);
   bool exist = plane_evaluate(forces->resolution);
-  double force = exist ? force_with_share(forces, column, trial_share) - first_force(forces, column) : 0.0;
+  double force = exist ? force_with_share(forces, column, trial_share) - force_with_share(forces, column, 0.0) : 0.0;
   for (size_t row = 0; row < n && force != 0.0; row++) {
     acceleration[row * n] = (acceleration_of_row(forces, row) - forces->free[row]) / force;
     if (row_is_of_contact(forces, row)) continue;
@@ -194,21 +166,21 @@ static bool fill_column(struct RestForces *forces, size_t column) {
     stiction[friction * n] = (limit_of_row(forces, row, FRICTION_STICTION) - forces->given_stiction[friction]) / force;
     kinetic[friction * n] = (limit_of_row(forces, row, FRICTION_FORCE) - forces->given_kinetic[friction]) / force;
   }
-  for (size_t line = forces->lines; line < n && force != 0.0 && !row_is_of_line(forces, column); line++) {
-    double change = force_with_share(forces, line, 0.0) - first_force(forces, line);
-    add_effect(forces, line, -change / force, acceleration, stiction, kinetic, n);
-  }
   set_share(forces, column, 0.0);
   return exist && (force != 0.0 || forces->impulses.contact_count > 0);
 }
 
-/* Subtracts the effect of the forces with which the functions were read first. */
-static void subtract_first_forces(struct RestForces *forces) {
-  double *first = forces->missing;
-  for (size_t row = 0; row < forces->n; row++) first[row] = first_force(forces, row);
-  for (size_t row = 0; row < forces->n; row++)
-    if (first[row] != 0.0)
-      add_effect(forces, row, -first[row], forces->free, forces->given_stiction, forces->given_kinetic, 1);
+/* Subtracts the effect of the pressures with which the functions were read. */
+static void subtract_pressures(struct RestForces *forces) {
+  size_t n = forces->n;
+  for (size_t row = 0; row < n; row++)
+    for (size_t contact = 0; contact < forces->impulses.contact_count; contact++) {
+      forces->free[row] -= forces->pressure * forces->impulses.delassus[row * n + contact];
+      if (row_is_of_contact(forces, row)) continue;
+      size_t friction = friction_of_row(forces, row);
+      forces->given_stiction[friction] -= forces->pressure * forces->stiction[friction * n + contact];
+      forces->given_kinetic[friction] -= forces->pressure * forces->kinetic[friction * n + contact];
+    }
 }
 
 /* Reads the linear functions. False if accelerations do not exist. */
@@ -227,8 +199,8 @@ static bool fill_functions(struct RestForces *forces) {
     forces->given_stiction[friction_of_row(forces, row)] = limit_of_row(forces, row, FRICTION_STICTION);
     forces->given_kinetic[friction_of_row(forces, row)] = limit_of_row(forces, row, FRICTION_FORCE);
   }
-  for (size_t column = forces->n; column-- > 0 && exist;) exist = fill_column(forces, column);
-  subtract_first_forces(forces);
+  for (size_t column = 0; column < forces->n && exist; column++) exist = fill_column(forces, column);
+  subtract_pressures(forces);
   return exist;
 }
 
@@ -248,10 +220,6 @@ static double limit_at(const struct RestForces *forces, size_t row, const double
   double limit = given[friction];
   for (size_t j = 0; j < forces->n; j++) limit += derivative[friction * forces->n + j] * forces->force[j];
   return limit;
-}
-
-static size_t rows_of_friction(const struct RestForces *forces, size_t row) {
-  return row_is_of_line(forces, row) ? 1 : 2;
 }
 
 /* Returns the length of the vector of a friction. */

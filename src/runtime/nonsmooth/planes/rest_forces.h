@@ -47,7 +47,17 @@ static inline bool rest_slips(const struct RestForces *forces, size_t row) {
  */
 bool rest_is_unknown(const struct Resolution *resolution, size_t friction);
 
-/* Returns the largest stiction of all frictions in planes. */
+/* True if a row is that of a friction along a line. */
+static inline bool row_is_of_line(const struct RestForces *forces, size_t row) {
+  return row >= forces->lines;
+}
+
+/* Returns the number of rows of the friction of a row. */
+static inline size_t rows_of_friction(const struct RestForces *forces, size_t row) {
+  return row_is_of_line(forces, row) ? 1 : 2;
+}
+
+/* Returns the largest stiction of all frictions. */
 double largest_stiction(const struct Resolution *resolution);
 
 /*

@@ -4,8 +4,7 @@
  * have impulses. As tau vanishes they tend to finite ones, which end the slip. (D. E. Stewart: Rigid-body dynamics with
  * friction and impact, SIAM Review 42, 2000, section 3.)
  *
- * If they tend to 0 there are forces p / tau. From these plane_rests.c finds the modes; those of frictions along lines
- * alone follow at once. A second step counts small rates as 0: of slow frictions, and of lost bounces.
+ * If they tend to 0 there are forces p / tau. From these plane_rests.c finds the modes. A second step counts small rates as 0: of slow frictions, and of lost bounces.
  *
  * Impulses that only stress bodies between contacts may have any size. A small compliance makes them small.
  */
@@ -40,9 +39,6 @@ static const double largest_stress = 10.0;
 
 /* Relative change of the diagonal elements of W by compliant contacts. */
 static const double compliance = 1e-6;
-
-/* Relative to the limit of a friction, or to the largest force: smaller differences, or forces, are rounding errors. */
-static const double at_limit = 1e-9;
 
 /* Slips that an event ends, and times that it takes the modes of a step. More of them have no end. */
 enum { SLIP_LIMIT = 100, MODES_LIMIT = 20 };
@@ -223,15 +219,7 @@ static bool find_impulses_of_step(struct ShortStep *step) {
   return is_found;
 }
 
-/* Returns the mode of a friction along a line in a step, given its row: 0 if it sticks, else the sign of its velocity. */
-static double mode_in_step(const struct ShortStep *step, size_t row) {
-  const struct ContactImpulses *impulses = &step->impulses;
-  double impulse = step->impulse[row], sign = impulse != 0.0 ? -impulse : impulses->rate[row];
-  double limit = limit_with(impulses, step->impulse, row);
-  return fabs(impulse) < (1.0 - at_limit) * limit ? 0.0 : copysign(1.0, sign);
-}
-
-/* Keeps the forces that have the impulses of a step; of frictions along lines, if there are no others, the modes. */
+/* Keeps the forces that have the impulses of a step. */
 static void keep_forces(struct ShortStep *step) {
   struct Resolution *resolution = step->resolution;
   const struct ContactImpulses *impulses = &step->impulses;
@@ -239,9 +227,7 @@ static void keep_forces(struct ShortStep *step) {
   memset(resolution->guess, 0, (contacts + resolution->switches->friction_count) * sizeof *resolution->guess);
   for (size_t row = 0; row < impulses->count; row++) {
     size_t member = impulses->member[row];
-    bool is_line = row >= impulses->contact_count && resolution->switches->plane_count == 0;
-    resolution->guess[row < impulses->contact_count ? member : contacts + member] =
-        is_line ? mode_in_step(step, row) : step->impulse[row] / step->tau;
+    resolution->guess[row < impulses->contact_count ? member : contacts + member] = step->impulse[row] / step->tau;
   }
   step->has_forces = true;
 }
@@ -292,22 +278,6 @@ static void mark_slow(struct Resolution *resolution) {
       *part_of_friction(resolution, i) = IS_SLOW;
 }
 
-/* Sets the modes of contacts and of frictions along lines to those of a step. */
-static void take_lines(struct Resolution *resolution) {
-  const struct SwitchTable *switches = resolution->switches;
-  size_t contacts = switches->contact_count;
-  double largest = 0.0;
-  for (size_t i = 0; i < contacts; i++) largest = fmax(largest, resolution->guess[i]);
-  for (size_t i = 0; i < contacts; i++) {
-    if (resolution->part[i] == LEFT_OUT) continue;
-    bool presses = resolution->guess[i] > at_limit * largest;
-    set_contact(resolution, i, presses);
-    resolution->forced[i] = presses ? FORCED_CLOSED : FORCED_OPEN;
-    for (size_t k = 0; k < switches->friction_count; k++)
-      if (rests_on(switches, k, i)) set_friction(resolution, k, resolution->guess[contacts + k]);
-  }
-}
-
 /* Evaluates with the present modes; with those of release_chosen() if they have no accelerations. False without any. */
 static bool evaluate_or_release(struct Resolution *resolution) {
   if (resolution_evaluate(resolution)) return true;
@@ -317,13 +287,10 @@ static bool evaluate_or_release(struct Resolution *resolution) {
 
 /* Finds the modes from the forces of a step. False if there are none, or after many steps in the event. */
 static bool continue_forces(struct Resolution *resolution, bool stops) {
-  const struct FrictionLaws *laws = resolution->switches->friction_laws;
-  bool has_planes = resolution->switches->plane_count > 0;
-  if (has_planes && !evaluate_or_release(resolution)) return false;
+  if (!evaluate_or_release(resolution)) return false;
   if (++resolution->continued_forces > MODES_LIMIT) return false;
-  if (!has_planes) take_lines(resolution);
-  else if (!laws->continue_together(resolution, stops)) return false;
-  else set_flips(resolution, 1.0);
+  if (!resolution->switches->friction_laws->continue_together(resolution, stops)) return false;
+  set_flips(resolution, 1.0);
   return true;
 }
 

@@ -18,6 +18,7 @@
 #include "nonsmooth/cones/cone_impulses.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/impacts.h"
+#include "nonsmooth/tolerances.h"
 
 /* Contacts take part whose gap could close in this many steps. */
 static const double reach = 4.0;
@@ -51,34 +52,59 @@ static size_t choose_near(struct Resolution *resolution, double length) {
   return count;
 }
 
-/* Fills the rates of the law without impulses. */
+/* Fills the rates at the end of the step without impulses. */
 static void fill_rates(const struct Resolution *resolution, const struct ContactImpulses *impulses, double length) {
   for (size_t row = 0; row < impulses->count; row++) {
+    bool is_contact = row < impulses->contact_count;
     size_t member = impulses->member[row];
-    if (row >= impulses->contact_count) {
-      size_t slot = friction_slot(resolution->switches, member, FRICTION_RATE);
-      impulses->rate[row] += length * resolution->value[slot];
-      continue;
-    }
-    double rate = impulses->rate[row] + length * contact_value(resolution, member, CONTACT_ACCELERATION);
-    double gap = fmax(contact_value(resolution, member, CONTACT_GAP), 0.0);
-    bool is_struck = gap + length * rate < 0.0;
-    double bounce = is_struck ? impact_restitution(resolution, member) * fmin(impulses->rate[row], 0.0) : gap / length;
-    impulses->rate[row] = rate + bounce;
+    size_t slot = is_contact ? contact_slot(resolution->switches, member, CONTACT_RATE)
+                             : friction_slot(resolution->switches, member, FRICTION_VELOCITY);
+    size_t change = is_contact ? contact_slot(resolution->switches, member, CONTACT_ACCELERATION)
+                               : friction_slot(resolution->switches, member, FRICTION_RATE);
+    impulses->rate[row] = resolution->value[slot] + length * resolution->value[change];
   }
 }
 
-/* Closes the contacts that press at the end of the step, and lets the frictions stick that are below their limits. */
+/* Adds to the rates of contacts what they may not fall to: minus that of a bounce, or of a gap that closes. */
+static void add_bounds(const struct Resolution *resolution, const struct ContactImpulses *impulses, double length,
+                       bool bounces) {
+  for (size_t row = 0; row < impulses->contact_count; row++) {
+    size_t contact = impulses->member[row];
+    double gap = fmax(contact_value(resolution, contact, CONTACT_GAP), 0.0);
+    bool is_struck = gap + length * impulses->rate[row] < 0.0;
+    double restitution = is_struck && bounces ? impact_restitution(resolution, contact) : 0.0;
+    double closing = fmin(contact_value(resolution, contact, CONTACT_RATE), 0.0);
+    impulses->rate[row] += is_struck ? restitution * closing : gap / length;
+  }
+}
+
+/* Finds the impulses. False if there are none, or energy would grow, as with much friction at a bounce. */
+static bool find_impulses_ahead(const struct Resolution *resolution, const struct ContactImpulses *impulses,
+                                double length, bool bounces, double *impulse) {
+  fill_rates(resolution, impulses, length);
+  add_bounds(resolution, impulses, length, bounces);
+  if (!cone_impulses_find(resolution, impulses, impulses->rate, impulse)) return false;
+  fill_rates(resolution, impulses, length);
+  return !gains_energy(impulses, impulse);
+}
+
+/*
+ * Closes the contacts that have an impulse and do not bounce, and lets the frictions stick that are below their limits.
+ */
 static void set_modes(struct Resolution *resolution, const struct ContactImpulses *impulses, const double *impulse) {
   size_t contacts = impulses->contact_count;
-  for (size_t row = 0; row < contacts; row++)
-    if (impulse[row] > 0.0) set_contact(resolution, impulses->member[row], true);
+  double slow = tolerances_of(resolution).rest;
+  for (size_t row = 0; row < contacts; row++) {
+    bool bounces = impulses->rate[row] + change_of_rate(impulses, impulse, row) > slow;
+    if (impulse[row] > 0.0 && !bounces) set_contact(resolution, impulses->member[row], true);
+  }
   for (size_t row = contacts; row < impulses->count; row++) {
     size_t friction = impulses->member[row], rows = is_in_plane(resolution->switches, friction) ? 2 : 1;
     double size = rows == 2 ? hypot(impulse[row], impulse[row + 1]) : fabs(impulse[row]);
     if (size < (1.0 - below_limit) * limit_with(impulses, impulse, row)) set_friction(resolution, friction, 0.0);
     row += rows - 1;
   }
+  let_unpressed_slide(resolution);
 }
 
 /* Moves the coordinates, and the states of the first order, with the velocities. False if rates do not exist. */
@@ -92,13 +118,17 @@ static bool move_coordinates(struct Resolution *resolution, double length) {
   return true;
 }
 
-/* Adds the accelerations and impulses of a step, and moves on. False if there are no impulses. */
+/*
+ * Adds the accelerations and impulses of a step, and moves on. False if there are no impulses. Where restitution would
+ * add energy, nothing bounces.
+ */
 static bool take_impulses(struct Resolution *resolution, const struct ContactImpulses *impulses, double length,
                           double *impulse) {
   const double *acceleration = resolution_accelerations(resolution);
   double *velocity = resolution->state + lagrangian.coordinate_count;
-  fill_rates(resolution, impulses, length);
-  if (!cone_impulses_find(resolution, impulses, impulses->rate, impulse)) return false;
+  if (!find_impulses_ahead(resolution, impulses, length, true, impulse) &&
+      !find_impulses_ahead(resolution, impulses, length, false, impulse))
+    return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += length * acceleration[i];
   for (size_t row = 0; row < impulses->count; row++) impact_add(resolution, impulses, row, impulse[row]);
   if (!move_coordinates(resolution, length)) return false;

@@ -1,0 +1,81 @@
+"""
+A ladder between a rough floor and a rough wall, whose foot is pulled away ever harder.
+
+It is statically indeterminate: the force of the wall's friction is not given by balance. It rests as long as any forces within both limits balance
+the load (a linear program), and then slides down along both.
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import linprog
+
+from fmu import Instance, build_systems
+
+MASS, INERTIA, GRAVITY, RAMP = 10.0, 10.0 / 3.0, 9.81, 2.0  # kg, kg m^2, m/s^2, N/s; it is 2 m long
+LADDER = f"""<system name="LoadedLadder"><parameter name="mu1" start="0.4"/><parameter name="mu2" start="0.6"/><parameter name="q0" start="1.2"/>
+  <coordinate name="x" velocity="vx" start="cos(q0)"/><coordinate name="y" velocity="vy" start="sin(q0)"/><coordinate name="q" velocity="w" start="q0"/>
+  <body name="ladder" mass="{MASS}" x="x" y="y" inertia="{INERTIA}" angle="q"/><gravity y="-{GRAVITY}"/>
+  <contact name="floor" gap="y - sin(q)"/><contact name="wall" gap="x - cos(q)"/>
+  <friction name="foot" velocity="vx - sin(q)*w" force="mu1*floor.force"/><friction name="head" velocity="vy + cos(q)*w" force="mu2*wall.force"/>
+  <force coordinate="x">{RAMP}*time</force><force coordinate="q">-{RAMP}*time*sin(q)</force></system>"""
+
+
+@pytest.fixture(scope="module", autouse=True)
+def built():
+    build_systems("ladders", {"LoadedLadder": LADDER})
+
+
+def largest_pull(mu1, mu2, q):
+    """Return the largest pull that forces N1, T1, N2, T2 within the limits balance; the pull is the fifth unknown."""
+    s, c = np.sin(q), np.cos(q)
+    balance = [[0, 1, 1, 0, 1], [1, 0, 0, 1, 0], [-c, -s, s, c, -s]]
+    limits = [[-mu1, 1, 0, 0, 0], [-mu1, -1, 0, 0, 0], [0, 0, -mu2, 1, 0], [0, 0, -mu2, -1, 0]]
+    bounds = [(0, None), (None, None), (0, None), (None, None), (0, None)]
+    found = linprog([0, 0, 0, 0, -1], limits, np.zeros(4), balance, [0, MASS * GRAVITY, 0], bounds)
+    return found.x[4] if found.status == 0 else 0.0
+
+
+def falling(time, state, mu1, mu2):
+    """The ladder slides down along wall and floor, with both frictions at their limits."""
+    q, w = state
+    s, c, pull = np.sin(q), np.cos(q), RAMP * time
+    # rows: x, y, q; unknowns: the angular acceleration, N1, N2
+    matrix = [[-MASS * s, mu1, -1], [MASS * c, -1, -mu2], [INERTIA, c - mu1 * s, -s - mu2 * c]]
+    return [w, np.linalg.solve(matrix, [pull + MASS * c * w * w, MASS * (s * w * w - GRAVITY), -s * pull])[0]]
+
+
+def draws():
+    random = np.random.default_rng(5)
+    cases = [(0.4, 0.6, 1.2), (0.5, 0.3, 1.1), (1.2, 1.3, 0.5)]
+    while len(cases) < 10:
+        case = tuple(round(float(x), 3) for x in (random.uniform(0.2, 1.2), random.uniform(0.2, 1.2), random.uniform(0.6, 1.3)))
+        if 1.0 < largest_pull(*case) < 100.0:
+            cases.append(case)
+    return cases
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
+@pytest.mark.parametrize("mu1, mu2, q0", draws())
+def test_a_ladder_rests_while_any_forces_balance_the_pull(mu1, mu2, q0, tolerance):
+    instance = Instance("LoadedLadder").initialize({"mu1": mu1, "mu2": mu2, "q0": q0}, tolerance=tolerance)
+    start = largest_pull(mu1, mu2, q0) / RAMP
+    before, behind = start * (1 - 1e-6), start + 0.1
+    for part in np.diff(np.linspace(0.0, before, 20)):
+        instance.step(part)
+        floor, foot, wall, head = instance.get("floor.force", "foot.force", "wall.force", "head.force")  # those of frictions are against positive velocities
+        assert min(floor, wall) > 0 and abs(foot) <= mu1 * floor * (1 + 1e-9) and abs(head) <= mu2 * wall * (1 + 1e-9)
+        assert floor - head == pytest.approx(MASS * GRAVITY, rel=1e-9)
+    assert instance.get("vx", "w") == pytest.approx([0.0, 0.0], abs=1e-12)
+    instance.step(behind - before)
+    angle = solve_ivp(falling, (start, behind), [q0, 0.0], args=(mu1, mu2), method="DOP853", rtol=1e-12, atol=1e-14).y[0, -1]
+    assert instance.get("q") == pytest.approx(angle, abs=10 * tolerance)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
+def test_a_ladder_that_has_left_the_wall_slides_and_sticks_by_turns(tolerance):
+    """A foot that begins to slip against its creep within the tolerance would stop at once, again and again."""
+    instance = Instance("LoadedLadder").initialize({"mu1": 0.5, "mu2": 0.3, "q0": 1.1}, tolerance=tolerance)
+    for _ in range(13000):
+        instance.step(0.002)
+    assert instance.get("floor.force") > 0
