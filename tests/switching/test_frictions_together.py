@@ -41,6 +41,9 @@ def row(frictions, joint, contacts=False):
 # A block with frictions in a plane and along x, which a force along a turning direction moves from rest.
 TURNING = """<coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><particle mass="2" x="x" y="y"/><friction name="f" velocity="vx" across="vy" force="5"/>
   <friction name="g" velocity="vx" force="3"/><force coordinate="x">5.4*time</force><force coordinate="y">1.2*time</force>"""
+# A ratchet has another limit backwards, so that its force is not found with the other one's.
+RATCHET = """<coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><particle mass="2" x="x" y="y"/><friction name="f" velocity="vx" across="vy" force="5"/>
+  <friction name="g" velocity="vx" force="3" forceBack="6"/><parameter name="rate" start="2"/><force coordinate="x">rate*time</force>"""
 # Arms in a horizontal plane, straight or nearly. Masses, lengths, frictions at the ends of the links and in the joints, start, torques by time.
 PASSING = ((1.355, 1.568), (0.7821, 0.9102), (2.48, 2.61), (0, 1.91), (0.1495, 0.0128), (3.6207, 0))
 FROM_REST = ((1, 1, 1), (1, 1, 1), (0, 2, 2), (0, 0, 0), (0, 0, 0), (0, 20, 0))
@@ -76,7 +79,7 @@ SLOPES = """<coordinate name="x0" velocity="v0"/><coordinate name="y0" velocity=
 SYSTEMS = {f"{name}By{joint.title()}": row(frictions, joint) for name, frictions in ROWS.items() for joint in JOINTS}
 SYSTEMS |= {f"{name}OnFloor": row(frictions, "slider", True) for name, frictions in ROWS.items()}
 ROW_SYSTEMS = list(SYSTEMS)
-SYSTEMS |= {"TurningLoad": TURNING, "PassingArm": arm(*PASSING), "ArmFromRest": arm(*FROM_REST), "Tied": TIED, "Slopes": SLOPES}
+SYSTEMS |= {"TurningLoad": TURNING, "Ratchet": RATCHET, "PassingArm": arm(*PASSING), "ArmFromRest": arm(*FROM_REST), "Tied": TIED, "Slopes": SLOPES}
 KINDS = pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 
 
@@ -113,6 +116,17 @@ def test_the_onset_of_slip_has_the_direction_of_the_law(kind, tolerance):
     expected = solve_ivp(rates, (start, 3.0), [0.0, 0.0, *(1e-9 * load(start))], method="LSODA", rtol=1e-10, atol=1e-13).y[:, -1]
     error = 1e-6 if kind == "CoSimulation" else 50 * tolerance  # CVODE's own error
     assert at_end("TurningLoad", ["x", "y", "vx", "vy"], kind, tolerance, 3.0) == pytest.approx(expected, abs=error)
+
+
+@pytest.mark.parametrize("rate, limit", [(2.0, 8.0), (-2.0, -11.0)])
+def test_a_ratchet_yields_beside_a_friction_in_a_plane(rate, limit):
+    instance = fmu.Instance("Ratchet").initialize({"rate": rate}, tolerance=1e-8)
+    start = limit / rate
+    instance.step(start - 1e-3)
+    assert instance.get("vx") == 0.0
+    instance.step(7.0 - start + 1e-3)
+    assert instance.get("vx") == pytest.approx(rate * (7.0 - start) ** 2 / 4, abs=1e-7)
+    instance.free()
 
 
 def arm_rates(time, state, parts):

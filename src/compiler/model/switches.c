@@ -85,8 +85,8 @@ static Node size_along_line(struct Graph *graph, const struct Friction *friction
 
 Node sliding_force(struct Graph *graph, const struct Friction *friction) {
   if (friction->plane.axis == NO_PLANE) {
-    Node share = friction->is_given ? friction->mode : add(graph, friction->mode, friction->share);
-    return multiply(graph, share, size_along_line(graph, friction));
+    Node carried = friction->is_given ? ZERO : multiply(graph, friction->share, friction->sliding);
+    return add(graph, multiply(graph, friction->mode, size_along_line(graph, friction)), carried);
   }
   return multiply(graph, friction->sliding, direction_in_plane(graph, friction));
 }

@@ -133,7 +133,7 @@ struct SlidingLaws {
   bool (*explain)(struct Resolution *resolution);
 };
 
-/* Frictions; FMUs without any do not link them. */
+/* Frictions: friction_laws, or plane_friction_laws where some follow from contacts or are in a plane. */
 struct FrictionLaws {
   /* Lets one friction along a line slide whose constraint does not hold its velocity. False if there is none. */
   bool (*slide_unheld)(struct Resolution *resolution);
@@ -154,17 +154,17 @@ struct FrictionLaws {
   /* Sets the modes of frictions in planes from start values, as guess of struct EventLaws; NULL without any. */
   void (*guess)(struct Instance *instance);
   /*
-   * Finds the modes of contacts and frictions in planes at rest from all their forces at once (plane_rests.c), at most
-   * once in an event resolution. False if there are none. NULL without frictions in planes.
+   * Finds the modes of contacts and frictions at rest from all their forces at once (plane_rests.c), at most once in an
+   * event resolution. False if there are none. This and the next ones are NULL in friction_laws.
    */
   bool (*resolve_together)(struct Resolution *resolution);
-  /* plane_rests_continue(); NULL without frictions in planes. */
+  /* plane_rests_continue() */
   bool (*continue_together)(struct Resolution *resolution, bool stops);
-  /* let_stopped_slip() of contact_impulses.h; NULL without frictions in planes. */
+  /* let_stopped_slip() of contact_impulses.h */
   bool (*slip_where_stopped)(struct Resolution *resolution);
-  /* True if the friction in a plane is so slow that it is tried to stick; NULL without any. */
+  /* True if the friction in a plane is so slow that it is tried to stick. */
   bool (*is_slow)(const struct Resolution *resolution, size_t plane);
-  /* Lets the friction in a plane slide or stick; NULL without any. */
+  /* Lets the friction in a plane slide or stick. */
   void (*set_plane)(struct Resolution *resolution, size_t plane, bool slides);
 };
 

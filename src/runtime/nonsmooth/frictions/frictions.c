@@ -163,8 +163,21 @@ bool friction_rests(const struct Resolution *resolution, size_t friction) {
   return state.mode == 0.0 || !state.is_moving;
 }
 
-bool friction_is_overcome(const struct Resolution *resolution, size_t friction) {
+bool friction_is_even(const struct Resolution *resolution, size_t friction) {
+  const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
   if (is_in_plane(resolution->switches, friction) || resolution->switches->frictions[friction].is_given) return false;
+  return value[FRICTION_STICTION] == value[FRICTION_STICTION_BACK] &&
+         value[FRICTION_FORCE] == value[FRICTION_FORCE_BACK];
+}
+
+bool friction_rests_at_limit(const struct Resolution *resolution, size_t friction) {
+  struct FrictionState state = friction_state(resolution, friction);
+  bool is_still = !state.is_moving && fabs(state.rate) <= state.error_bound_of_rate;
+  return state.mode != 0.0 && is_still && !state.has_no_force && friction_is_even(resolution, friction);
+}
+
+bool friction_is_overcome(const struct Resolution *resolution, size_t friction) {
+  if (!friction_is_even(resolution, friction)) return false;
   struct FrictionState state = friction_state(resolution, friction);
   if (state.mode != 0.0 || state.has_no_force || (state.is_moving && state.may_jump)) return false;
   return mode_without_hold(resolution, &state) == 0.0 && is_overcome(resolution, &state);

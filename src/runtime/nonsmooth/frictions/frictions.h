@@ -33,7 +33,13 @@ bool frictions_explain_jam(struct Resolution *resolution, size_t branch);
 /* True if a friction along a line sticks, or slides without a velocity. */
 bool friction_rests(const struct Resolution *resolution, size_t friction);
 
-/* True if a friction sticks, and needs more than its stiction. False in planes, and for prescribed velocities. */
+/* True if a friction along a line has equal limits in both directions. Its velocity is not prescribed. */
+bool friction_is_even(const struct Resolution *resolution, size_t friction);
+
+/* True if such a friction acts with its limit although it neither moves nor accelerates. */
+bool friction_rests_at_limit(const struct Resolution *resolution, size_t friction);
+
+/* True if such a friction sticks, and needs more than its stiction. */
 bool friction_is_overcome(const struct Resolution *resolution, size_t friction);
 
 /* Sets the mode of a friction along a line. Leaving rest, it acts with its stiction as long as others hold it. */

@@ -6,16 +6,13 @@
 #include "nonsmooth/frictions/frictions.h"
 
 /*
- * True if a friction along a line rests: it sticks, or acts at rest with its limit. Its force has a part in that of those
- * in planes, unless its limits differ by direction.
+ * True if a friction along a line rests: it sticks, or acts at rest with its limit. Its force is found with those in
+ * planes, unless its limits differ by direction.
  */
 static bool line_rests(const struct Resolution *resolution, size_t friction) {
-  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
-  const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
-  bool is_symmetric =
-      value[FRICTION_STICTION] == value[FRICTION_STICTION_BACK] && value[FRICTION_FORCE] == value[FRICTION_FORCE_BACK];
-  if (!is_symmetric || metadata->is_given || is_in_plane(resolution->switches, friction)) return false;
-  return mode_of(resolution, metadata->reported) == 0.0 || friction_rests(resolution, friction);
+  if (!friction_is_even(resolution, friction)) return false;
+  size_t reported = resolution->switches->frictions[friction].reported;
+  return mode_of(resolution, reported) == 0.0 || friction_rests(resolution, friction);
 }
 
 void lines_choose(const struct Resolution *resolution) {
@@ -29,8 +26,10 @@ void lines_choose(const struct Resolution *resolution) {
 }
 
 static void set_line(struct Resolution *resolution, size_t friction, double mode, double share) {
-  resolution_set_mode(resolution, resolution->switches->frictions[friction].mode, mode);
-  resolution_set_mode(resolution, resolution->switches->frictions[friction].share, share);
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  resolution_set_mode(resolution, metadata->mode, mode);
+  resolution_set_mode(resolution, metadata->reported, mode);
+  resolution_set_mode(resolution, metadata->share, share);
 }
 
 void line_carry(struct Resolution *resolution, size_t friction, double share) {

@@ -115,16 +115,6 @@ static size_t find_flipping(const struct Resolution *resolution, double often) {
   return switches->friction_count;
 }
 
-/* True if a friction in a plane rests. */
-static bool any_rests(const struct Resolution *resolution) {
-  bool any = resolution->switches->rests_on != NULL;
-  for (size_t i = 0; i < resolution->switches->plane_count; i++) {
-    struct PlaneState state = plane_state(resolution, i);
-    any |= state.mode == PLANE_STICKS && !state.is_given;
-  }
-  return any;
-}
-
 /* True if a friction along a line needs more than its stiction. */
 static bool any_is_overcome(const struct Resolution *resolution) {
   bool any = false;
@@ -132,8 +122,16 @@ static bool any_is_overcome(const struct Resolution *resolution) {
   return any;
 }
 
+/* True if a friction along a line acts with its limit at rest: with other forces of contacts it may have a reserve. */
+static bool any_rests_at_limit(const struct Resolution *resolution) {
+  bool any = false;
+  for (size_t i = 0; i < resolution->switches->friction_count && resolution->switches->rests_on != NULL; i++)
+    any |= friction_rests_at_limit(resolution, i);
+  return any;
+}
+
 static const char *act_on_planes(struct Resolution *resolution, bool *again) {
-  bool resolves = any_rests(resolution) && any_is_overcome(resolution);
+  bool resolves = any_is_overcome(resolution);
   *again = false;
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
@@ -145,8 +143,9 @@ static const char *act_on_planes(struct Resolution *resolution, bool *again) {
       resolves = true;
     else *again |= change_slide(resolution, &state);
   }
-  if (*again || !resolves) return NULL;
-  *again = true;
+  if (*again) return NULL;
+  *again = resolves || (any_rests_at_limit(resolution) && plane_rests_find_with_contacts(resolution));
+  if (!resolves) return NULL;
   bool is_found = plane_rests_find(resolution) || plane_rests_find_with_contacts(resolution);
   return is_found || resolution_ends_slip(resolution) ? NULL : reject_directions(resolution);
 }
@@ -160,12 +159,12 @@ static bool end_round_trips(struct Resolution *resolution) {
 static const char *act(struct Resolution *resolution, bool *again) {
   const char *problem = NULL;
   *again = change_forces(resolution);
-  if (!*again) problem = frictions_act_beside(resolution, any_rests(resolution), again);
+  if (!*again) problem = frictions_act_beside(resolution, true, again);
   if (problem == NULL && !*again && end_round_trips(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
   size_t flipping = find_flipping(resolution, SHORT_STEP_LIMIT);
   if (problem != NULL || flipping == resolution->switches->friction_count) return problem;
-  *again = resolution_ends_slip(resolution);
+  *again = jams_resolve(resolution) || resolution_ends_slip(resolution);
   return *again ? NULL : frictions_report_inconsistent(resolution, flipping);
 }
 

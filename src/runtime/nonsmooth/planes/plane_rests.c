@@ -1,8 +1,8 @@
 /*
- * Frictions in planes at rest. Those that are slow, and those that stick, are tried to stick. If one would need more
- * than its stiction, the forces of all are found together (rest_forces.c), and set the modes. The contacts stay closed
- * at first. If no forces are found, those of all contacts at rest are unknown, too: a contact presses or opens. This
- * second search is made at most once in an event resolution. A third one starts from the forces of a short step.
+ * Frictions at rest. Those that are slow, and those that stick, are tried to stick. One may need more than its
+ * stiction. Then the forces of all, and of the closed contacts at rest, are found together (rest_forces.c), and set the
+ * modes. If none are found, open contacts take part too, at most once in an event resolution. A third search starts
+ * from the forces of a short step.
  *
  * If the supports are statically indeterminate, the constraints of sticking frictions have the forces of least norm.
  * If these exceed a limit, frictions stick with the forces that were found, which have a margin to their limits.
@@ -299,8 +299,8 @@ static bool let_slow_slide(struct RestForces *forces) {
  * Selects the frictions again, and lets slow ones slip along the directions of the forces. Along their small velocities
  * there are no forces; these change the direction of the motion at once.
  */
-static void choose_without_slow(struct Resolution *resolution, bool with_contacts) {
-  choose_at_rest(resolution, with_contacts);
+static void choose_without_slow(struct Resolution *resolution) {
+  choose_at_rest(resolution, true);
   for (size_t i = 0; i < resolution->switches->plane_count; i++) {
     struct PlaneState state = plane_state(resolution, i);
     enum Part *part = part_of_plane(resolution, &state);
@@ -309,13 +309,13 @@ static void choose_without_slow(struct Resolution *resolution, bool with_contact
 }
 
 /* Finds the modes where not all can stick. False if that fails. */
-static bool find_slips(struct Resolution *resolution, bool with_contacts, bool continues) {
+static bool find_slips(struct Resolution *resolution, bool continues) {
   struct RestForces forces = {.resolution = resolution, .continues = continues};
   release_others(resolution);
   for (bool is_found = false, any_slides = false; !is_found;) {
     if (!rest_forces_find(&forces)) {
       if (!any_slides) return false;
-      choose_without_slow(resolution, with_contacts);
+      choose_without_slow(resolution);
       any_slides = false;
       continue;
     }
@@ -336,6 +336,12 @@ static bool found_or_restored(struct Resolution *resolution, bool is_found) {
   return false;
 }
 
+/* Lets closed contacts take part that rest: their forces are unknown too. */
+static void take_closed(struct Resolution *resolution) {
+  for (size_t i = 0; i < resolution->switches->contact_count; i++)
+    resolution->part[i] = contact_is_closed(resolution, i) && contact_may_rest(resolution, i) ? TAKES_PART : LEFT_OUT;
+}
+
 static bool find_rests(struct Resolution *resolution) {
   bool stops;
   choose_at_rest(resolution, false);
@@ -344,7 +350,8 @@ static bool find_rests(struct Resolution *resolution) {
   if (!try_to_stick(resolution)) return false;
   if (all_stick(resolution)) return bring_to_rest(resolution, stops);
   release_passing(resolution);
-  return find_slips(resolution, false, false) && bring_to_rest(resolution, stops);
+  take_closed(resolution);
+  return find_slips(resolution, false) && bring_to_rest(resolution, stops);
 }
 
 bool plane_rests_find(struct Resolution *resolution) {
@@ -379,7 +386,7 @@ static bool find_with_contacts(struct Resolution *resolution, bool continues, bo
   choose_at_rest(resolution, true);
   if (continues && !stops) let_moving_pass(resolution);
   slide_on_chosen(resolution);
-  bool is_found = (continues || plane_stops_motion(resolution, &stops)) && find_slips(resolution, true, continues) &&
+  bool is_found = (continues || plane_stops_motion(resolution, &stops)) && find_slips(resolution, continues) &&
                   bring_to_rest(resolution, stops);
   return found_or_restored(resolution, is_found);
 }

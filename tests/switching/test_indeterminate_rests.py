@@ -1,8 +1,7 @@
 """
-A ladder between a rough floor and a rough wall, whose foot is pulled away ever harder.
+Bodies at rest on contacts with friction, whose forces are not given by balance.
 
-It is statically indeterminate: the force of the wall's friction is not given by balance. It rests as long as any forces within both limits balance
-the load (a linear program), and then slides down along both.
+They rest as long as any forces within all limits balance the load (a linear program), and then slip.
 """
 
 import numpy as np
@@ -21,9 +20,19 @@ LADDER = f"""<system name="LoadedLadder"><parameter name="mu1" start="0.4"/><par
   <force coordinate="x">{RAMP}*time</force><force coordinate="q">-{RAMP}*time*sin(q)</force></system>"""
 
 
+PLACES, HEIGHT, WEIGHT = (-0.6, 0.1, 0.6), 0.5, 49.05  # of the feet of a block, of its centre, in m; in N
+FEET = f"""<system name="ThreeFeet"><coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy" start="{HEIGHT}"/><coordinate name="q" velocity="w"/>
+  <body name="block" mass="5" x="x" y="y" inertia="0.5" angle="q"/><force coordinate="y">-{WEIGHT}</force><force coordinate="x">{RAMP}*time</force>
+""" + "\n".join(f"""<parameter name="mu{i}" start="0.5"/><point name="foot{i}" in="block" x="{place}" y="-{HEIGHT}"/><contact name="c{i}" gap="foot{i}.y"/>
+  <friction name="f{i}" velocity="foot{i}.vx" force="mu{i}*c{i}.force"/>""" for i, place in enumerate(PLACES)) + "</system>"  # fmt: skip
+GUIDE = """<system name="GuidedBlock"><coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><particle mass="2" x="x" y="y"/>
+  <force coordinate="y">-20</force><force coordinate="x">time</force><contact name="floor" gap="y"/>
+  <friction name="f" velocity="vx" force="0.3*floor.force"/><friction name="guide" velocity="vx" force="4" stiction="5"/></system>"""
+
+
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("ladders", {"LoadedLadder": LADDER})
+    build_systems("indeterminate", {"LoadedLadder": LADDER, "ThreeFeet": FEET, "GuidedBlock": GUIDE})
 
 
 def largest_pull(mu1, mu2, q):
@@ -79,3 +88,37 @@ def test_a_ladder_that_has_left_the_wall_slides_and_sticks_by_turns(tolerance):
     for _ in range(13000):
         instance.step(0.002)
     assert instance.get("floor.force") > 0
+
+
+def test_a_ladder_has_a_reserve_at_a_constant_load():
+    """At the start its head acts with its limit, as the forces of least norm would pull at the wall."""
+    instance = Instance("LoadedLadder").initialize({"mu1": 0.509, "mu2": 0.88, "q0": 1.3}, tolerance=1e-6)
+    instance.step(0.1)
+    wall, head = instance.get("wall.force", "head.force")
+    assert abs(head) < 0.9 * 0.88 * wall
+
+
+@pytest.mark.parametrize("mu", [(0.2, 0.6, 0.2), (0.8, 0.2, 0.2), (0.2, 0.8, 0.8), (0.5, 0.5, 0.5)])
+def test_a_block_on_three_feet_slips_at_the_largest_pull(mu):
+    """The feet share the weight as the frictions need it. N and T of the feet, and the pull at the block's centre."""
+    balance = [[*[1] * 3, *[0] * 3, 0], [*[0] * 3, *[1] * 3, -1], [*PLACES, *[-HEIGHT] * 3, 0]]
+    limits = [[*(-mu[i] * (i == k) for k in range(3)), *(sign * (i == k) for k in range(3)), 0] for i in range(3) for sign in (1, -1)]
+    bounds = [(0, None)] * 3 + [(None, None)] * 3 + [(0, None)]
+    start = linprog([0] * 6 + [-1], limits, np.zeros(6), balance, [WEIGHT, 0, 0], bounds).x[6] / RAMP
+    instance = Instance("ThreeFeet").initialize({f"mu{i}": value for i, value in enumerate(mu)}, tolerance=1e-6)
+    instance.step(start * (1 - 1e-5))
+    assert instance.get("vx") == pytest.approx(0.0, abs=1e-12)
+    instance.step(0.1)
+    assert instance.get("vx") > 1e-4
+
+
+def test_a_guide_with_stiction_holds_beside_a_floor():
+    """Together they hold 0.3*20 N + 5 N. Then the guide has its kinetic friction."""
+    instance = Instance("GuidedBlock").initialize(tolerance=1e-6)
+    for time in np.arange(1.0, 11.0):
+        instance.step(1.0)
+        assert abs(instance.get("guide.force")) <= 5 * (1 + 1e-9) and instance.get("vx") == pytest.approx(0.0, abs=1e-12), time
+    instance.step(1.0 - 1e-4)
+    assert instance.get("vx") == pytest.approx(0.0, abs=1e-12)
+    instance.step(2.0 + 1e-4)
+    assert instance.get("vx") == pytest.approx((13**2 - 11**2) / 4 - 10 * 2 / 2, abs=1e-4)
