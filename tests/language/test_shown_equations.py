@@ -63,6 +63,16 @@ def test_textbook_forms():
     assert equations("BouncingBall", "Equations of motion") == ["m*der(v) - ground.force = -m*g"]
 
 
+@pytest.mark.parametrize("contact", ["", '<contact name="c" gap="1 - x"/>'])
+def test_forces_of_frictions_are_one_symbol(contact, tmp_path):
+    """Their shares beside the constraints are left out, without contacts too."""
+    file = tmp_path / "system.xml"
+    file.write_text(f"""<system name="PlaneAndLine"><coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><particle mass="2" x="x" y="y"/>{contact}
+  <friction name="f" velocity="vx" across="vy" force="5"/><friction name="g" velocity="vx" force="3"/></system>""")
+    shown = subprocess.run([LAGC, "--equations", file], capture_output=True, text=True, check=True).stdout
+    assert "3*g.sliding" in shown and "share" not in shown and "carried" not in shown
+
+
 def test_derivation_of_the_double_pendulum():
     """Accelerations by Cramer's rule, and the conserved energy."""
     steps = {entry.left: entry.right for entry in listing(system_of_fmu("DoublePendulum")).sections["Derivation"] if hasattr(entry, "left")}

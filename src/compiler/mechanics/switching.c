@@ -467,7 +467,7 @@ Node without_branches(const struct Model *model, Node node) {
 static Node without_carried_forces(const struct Model *model, Node node) {
   struct Graph *graph = model->graph;
   const struct Switches *switches = &model->switches;
-  if (switches->contact_count == 0) return node;
+  if (switches->friction_count == 0) return node;
   Node *replacements = own_symbols(graph);
   for (size_t i = 0; i < switches->contact_count; i++)
     if (switches->contacts[i].carried != ZERO) replacements[graph->vertices[switches->contacts[i].carried].left] = ZERO;

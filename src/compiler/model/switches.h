@@ -55,8 +55,7 @@ struct FrictionPlane {
 struct Friction {
   size_t constraint; /* index among the model's constraints */
   Node mode, reported, velocity, sliding, stiction, sliding_back, stiction_back;
-  Node
-      share; /* along a line beside contacts, a mode: the share of its sliding force that acts while it sticks; else 0 */
+  Node share; /* along a line beside others, a mode: the part of its sliding force that acts while it sticks; or ZERO */
   bool is_given;
   bool has_static_limit; /* the stiction differs, and other frictions or constraints may keep the velocity at 0 */
   struct FrictionPlane plane;
