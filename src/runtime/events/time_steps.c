@@ -5,6 +5,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "instance/active_constraints.h"
 #include "instance/time_laws.h"
 #include "nonsmooth/resolution.h"
 #include "nonsmooth/resolve.h"
@@ -21,8 +22,7 @@ enum { TIME_STEP_LIMIT = 10000 };
 /* True if the modes of a copy of the state agree with it. The copy, with its jumps, is then taken; else the modes stay. */
 static bool modes_agree(struct Instance *instance, double time, double *state) {
   size_t size = lagrangian.state_count * sizeof *state, modes = lagrangian.switches->mode_count * sizeof(double);
-  double *copy = state + lagrangian.state_count;
-  double *mode = instance->parameter + lagrangian.parameter_count - lagrangian.switches->mode_count;
+  double *copy = state + lagrangian.state_count, *mode = modes_of(instance);
   double *before = scratch_take(instance, SCRATCH_MODES, modes);
   struct DeferredLog deferred;
   bool changed;

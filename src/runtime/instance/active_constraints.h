@@ -1,7 +1,12 @@
-/* The constraint of a closed contact or a sticking friction is active; a contact may carry a force beside it. */
+/* Modes. The constraint of a closed contact or a sticking friction is active; they may carry a force beside it. */
 #pragma once
 
 #include "instance/instance.h"
+
+/* Returns the modes of the instance, of lagrangian.switches. */
+static inline double *modes_of(const struct Instance *instance) {
+  return instance->parameter + lagrangian.parameter_count - lagrangian.switches->mode_count;
+}
 
 /* True if the contact is closed. */
 static inline bool contact_holds(const struct Instance *instance, size_t contact) {

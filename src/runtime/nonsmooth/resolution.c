@@ -6,6 +6,7 @@
 
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
+#include "instance/active_constraints.h"
 #include "detection/indicators.h"
 #include "detection/search.h"
 #include "support/arena.h"
@@ -217,16 +218,12 @@ void set_friction(struct Resolution *resolution, size_t friction, double mode) {
   }
 }
 
-static double *modes_of(const struct Resolution *resolution) {
-  return resolution->instance->parameter + lagrangian.parameter_count - resolution->switches->mode_count;
-}
-
 void resolution_keep_modes(struct Resolution *resolution) {
-  memcpy(resolution->kept_modes, modes_of(resolution), resolution->switches->mode_count * sizeof(double));
+  memcpy(resolution->kept_modes, modes_of(resolution->instance), resolution->switches->mode_count * sizeof(double));
 }
 
 void resolution_restore_modes(struct Resolution *resolution) {
-  memcpy(modes_of(resolution), resolution->kept_modes, resolution->switches->mode_count * sizeof(double));
+  memcpy(modes_of(resolution->instance), resolution->kept_modes, resolution->switches->mode_count * sizeof(double));
   resolution->instance->parameter_constants_are_stale = true;
 }
 

@@ -385,23 +385,26 @@ static void fill_units_of_rows(struct Interior *interior) {
   }
 }
 
+/* Follows the path of centres of one of the problems. False if it ends in front of a solution. */
+static bool follow_path_of(struct Interior *interior, bool is_associated, bool is_centered) {
+  interior->is_associated = is_associated;
+  interior->is_centered = is_centered;
+  return follow_central_path(interior);
+}
+
 double cone_interior(struct Cones *cones, double enough, bool is_centered, double *work) {
   size_t n = cones->impulses->count;
-  struct Interior interior = {.cones = cones, .n = n, .least = INFINITY, .enough = enough, .is_centered = is_centered};
+  struct Interior interior = {.cones = cones, .n = n, .least = INFINITY, .enough = enough};
   lay_out_interior(&interior, n, work);
   memset(interior.best, 0, n * sizeof *interior.best);
   memset(interior.shift, 0, n * sizeof *interior.shift);
   fill_units_of_rows(&interior);
   if (interior.size > 0.0) {
-    interior.is_associated = is_centered;
-    bool is_found = is_centered && follow_central_path(&interior);
-    interior.is_associated = false;
-    is_found = is_found || follow_central_path(&interior);
-    interior.is_centered = false;
-    is_found = is_found || (is_centered && follow_central_path(&interior));
-    interior.is_associated = true;
+    bool is_found = (is_centered && follow_path_of(&interior, true, true)) ||
+                    follow_path_of(&interior, false, is_centered) ||
+                    (is_centered && follow_path_of(&interior, false, false));
     for (int count = 0; count < ASSOCIATED_LIMIT && interior.least > nearly_solved && !is_found; count++) {
-      is_found = follow_central_path(&interior);
+      is_found = follow_path_of(&interior, true, false);
       update_shift(&interior, count >= UNDAMPED_LIMIT);
     }
   } else interior.least = 0.0;

@@ -248,11 +248,19 @@ static void find_coefficients(struct Resolution *resolution, struct ContactImpul
   }
 }
 
+size_t rate_slot(const struct SwitchTable *switches, const struct ContactImpulses *impulses, size_t row) {
+  return row < impulses->contact_count ? contact_slot(switches, impulses->member[row], CONTACT_RATE)
+                                       : friction_slot(switches, impulses->member[row], FRICTION_VELOCITY);
+}
+
+size_t change_slot(const struct SwitchTable *switches, const struct ContactImpulses *impulses, size_t row) {
+  return row < impulses->contact_count ? contact_slot(switches, impulses->member[row], CONTACT_ACCELERATION)
+                                       : friction_slot(switches, impulses->member[row], FRICTION_RATE);
+}
+
 static void find_rates(const struct Resolution *resolution, struct ContactImpulses *impulses) {
   for (size_t row = 0; row < impulses->count; row++) {
-    size_t member = impulses->member[row];
-    size_t slot = row < impulses->contact_count ? contact_slot(resolution->switches, member, CONTACT_RATE)
-                                                : friction_slot(resolution->switches, member, FRICTION_VELOCITY);
+    size_t slot = rate_slot(resolution->switches, impulses, row);
     impulses->rate[row] = resolution->value[slot];
     impulses->rounding = fmax(impulses->rounding, resolution->error_bound[slot]);
   }

@@ -14,6 +14,10 @@
  * constraints hold. False, and nothing is allocated, if M is singular or memory is missing.
  */
 bool contact_impulses_create(struct Resolution *resolution, struct ContactImpulses *impulses);
+
+/* Return the elements of value[] with the rate of a row, and with its change in time. */
+size_t rate_slot(const struct SwitchTable *switches, const struct ContactImpulses *impulses, size_t row);
+size_t change_slot(const struct SwitchTable *switches, const struct ContactImpulses *impulses, size_t row);
 void contact_impulses_free(const struct Resolution *resolution, struct ContactImpulses *impulses);
 
 /*

@@ -278,8 +278,10 @@ static bool stick_at_start(struct Resolution *resolution) {
   return changed;
 }
 
-const char *frictions_act_beside(struct Resolution *resolution, bool keeps_overcome, bool *switched) {
+/* Frictions that are overcome stay as they are where their forces are found with those of others. */
+const char *frictions_act(struct Resolution *resolution, bool *switched) {
   const struct SwitchTable *switches = resolution->switches;
+  bool keeps_overcome = switches->friction_laws->resolve_together != NULL;
   *switched = stick_at_start(resolution);
   for (size_t i = 0; i < switches->friction_count && !*switched; i++) {
     if (is_in_plane(switches, i) || switches->frictions[i].is_given) continue;
@@ -298,10 +300,6 @@ const char *frictions_act_beside(struct Resolution *resolution, bool keeps_overc
     *switched = true;
   }
   return NULL;
-}
-
-const char *frictions_act(struct Resolution *resolution, bool *switched) {
-  return frictions_act_beside(resolution, false, switched);
 }
 
 void frictions_release(struct Resolution *resolution) {

@@ -9,9 +9,6 @@ const char *frictions_act(struct Resolution *resolution, bool *again);
 bool frictions_report(struct Resolution *resolution, bool *again);
 const char *frictions_check(struct Resolution *resolution);
 
-/* The same, but those that are overcome stay as they are if keeps_overcome: their forces are found with others. */
-const char *frictions_act_beside(struct Resolution *resolution, bool keeps_overcome, bool *again);
-
 /*
  * Sets *is_constrained if other constraints fix the velocity, in a plane both velocities, of a friction that counts as
  * sliding. False if that cannot be determined.

@@ -6,9 +6,9 @@
  * plane_rests.c finds at once which of the frictions at rest stick, and along which directions the others slip.
  *
  * Each round makes one change, or one to each of several frictions. A friction may switch more than TOGETHER_LIMIT
- * times, or no forces may be found while the contacts stay closed. Then the forces of contacts and frictions are solved
- * for together, at most once in an event resolution. Beyond SHORT_STEP_LIMIT switches a short step is tried (end_slip.h).
- * If that fails, the motion ends with a message.
+ * times, or no forces may be found with the closed contacts. Then open contacts take part too, at most once in an event
+ * resolution. Beyond SHORT_STEP_LIMIT switches a short step is tried (end_slip.h). If that fails, the motion ends with a
+ * message.
  */
 #include <math.h>
 #include <string.h>
@@ -159,7 +159,7 @@ static bool end_round_trips(struct Resolution *resolution) {
 static const char *act(struct Resolution *resolution, bool *again) {
   const char *problem = NULL;
   *again = change_forces(resolution);
-  if (!*again) problem = frictions_act_beside(resolution, true, again);
+  if (!*again) problem = frictions_act(resolution, again);
   if (problem == NULL && !*again && end_round_trips(resolution)) *again = true;
   else if (problem == NULL && !*again) problem = act_on_planes(resolution, again);
   size_t flipping = find_flipping(resolution, SHORT_STEP_LIMIT);

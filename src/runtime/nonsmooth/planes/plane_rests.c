@@ -336,10 +336,10 @@ static bool found_or_restored(struct Resolution *resolution, bool is_found) {
   return false;
 }
 
-/* Lets closed contacts take part that rest: their forces are unknown too. */
+/* Lets closed contacts take part: their forces are unknown too. */
 static void take_closed(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    resolution->part[i] = contact_is_closed(resolution, i) && contact_may_rest(resolution, i) ? TAKES_PART : LEFT_OUT;
+    resolution->part[i] = contact_is_closed(resolution, i) ? TAKES_PART : LEFT_OUT;
 }
 
 static bool find_rests(struct Resolution *resolution) {

@@ -77,13 +77,10 @@ static void fill_rates_ahead(struct ShortStep *step, double share) {
   double *acceleration = step->work;
   step->slip = 0.0;
   for (size_t row = 0; row < impulses->count; row++) {
-    bool is_contact = row < impulses->contact_count;
-    size_t slot = is_contact ? contact_slot(resolution->switches, impulses->member[row], 0)
-                             : friction_slot(resolution->switches, impulses->member[row], 0);
-    impulses->rate[row] = resolution->value[slot + (is_contact ? (size_t)CONTACT_RATE : (size_t)FRICTION_VELOCITY)];
-    acceleration[row] = resolution->value[slot + (is_contact ? (size_t)CONTACT_ACCELERATION : (size_t)FRICTION_RATE)];
+    impulses->rate[row] = resolution->value[rate_slot(resolution->switches, impulses, row)];
+    acceleration[row] = resolution->value[change_slot(resolution->switches, impulses, row)];
     largest = fmax(largest, fabs(acceleration[row]));
-    if (!is_contact) step->slip = fmax(step->slip, fabs(impulses->rate[row]));
+    if (row >= impulses->contact_count) step->slip = fmax(step->slip, fabs(impulses->rate[row]));
     if (has_stopped(step, row)) impulses->rate[row] = 0.0;
   }
   step->share = share;

@@ -49,9 +49,7 @@ static void find_paradox(const struct Resolution *resolution, const struct Resti
 }
 
 static bool find_all_forces(struct Resolution *resolution) {
-  const struct FrictionLaws *laws = resolution->switches->friction_laws;
-  bool is_found = laws->resolve_together != NULL && laws->resolve_together(resolution);
-  return is_found || resolution_ends_slip(resolution);
+  return resolution->switches->friction_laws->resolve_together(resolution) || resolution_ends_slip(resolution);
 }
 
 static const char *resolve_paradox(struct Resolution *resolution, const struct Paradox *paradox, bool *again) {

@@ -55,13 +55,8 @@ static size_t choose_near(struct Resolution *resolution, double length) {
 /* Fills the rates at the end of the step without impulses. */
 static void fill_rates(const struct Resolution *resolution, const struct ContactImpulses *impulses, double length) {
   for (size_t row = 0; row < impulses->count; row++) {
-    bool is_contact = row < impulses->contact_count;
-    size_t member = impulses->member[row];
-    size_t slot = is_contact ? contact_slot(resolution->switches, member, CONTACT_RATE)
-                             : friction_slot(resolution->switches, member, FRICTION_VELOCITY);
-    size_t change = is_contact ? contact_slot(resolution->switches, member, CONTACT_ACCELERATION)
-                               : friction_slot(resolution->switches, member, FRICTION_RATE);
-    impulses->rate[row] = resolution->value[slot] + length * resolution->value[change];
+    double change = resolution->value[change_slot(resolution->switches, impulses, row)];
+    impulses->rate[row] = resolution->value[rate_slot(resolution->switches, impulses, row)] + length * change;
   }
 }
 
