@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import linprog
 
 from fmu import Instance, build_systems
+from test_switching import to, value
 
 MASS, INERTIA, GRAVITY, RAMP = 10.0, 10.0 / 3.0, 9.81, 2.0  # kg, kg m^2, m/s^2, N/s; it is 2 m long
 LADDER = f"""<system name="LoadedLadder"><parameter name="mu1" start="0.4"/><parameter name="mu2" start="0.6"/><parameter name="q0" start="1.2"/>
@@ -28,11 +29,21 @@ FEET = f"""<system name="ThreeFeet"><coordinate name="x" velocity="vx"/><coordin
 GUIDE = """<system name="GuidedBlock"><coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><particle mass="2" x="x" y="y"/>
   <force coordinate="y">-20</force><force coordinate="x">time</force><contact name="floor" gap="y"/>
   <friction name="f" velocity="vx" force="0.3*floor.force"/><friction name="guide" velocity="vx" force="4" stiction="5"/></system>"""
+PAIR = """<system name="LiftedPair"><coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy"/><coordinate name="z" velocity="vz" start="1"/>
+  <particle mass="2" x="x" y="y"/><particle mass="3" x="z" y="0"/><constraint name="rod">z - x - 1</constraint><contact name="floor" gap="y"/>
+  <parameter name="stiction" start="0.4"/><force coordinate="y">4*time - 20</force><force coordinate="x">time/4</force>
+  <friction name="lifted" velocity="vx" force="0.6*floor.force"/><friction name="left" velocity="vz" force="0.4*30" stiction="stiction*30"/></system>"""
+# The same along the line (0.6, 0.8) of a plane.
+PLANE_PAIR = """<system name="LiftedPairOnPlane"><coordinate name="x" velocity="vx"/><coordinate name="u" velocity="vu"/><coordinate name="y" velocity="vy"/>
+  <coordinate name="z" velocity="vz" start="1"/><coordinate name="w" velocity="vw"/><particle mass="2" x="x" y="y" z="u"/><particle mass="3" x="z" y="0" z="w"/>
+  <constraint name="rod">z - x - 1</constraint><constraint name="guide">w - u</constraint><contact name="floor" gap="y"/>
+  <parameter name="stiction" start="0.4"/><force coordinate="y">4*time - 20</force><force coordinate="x">0.6*time/4</force><force coordinate="u">0.8*time/4</force>
+  <friction name="lifted" velocity="vx" across="vu" force="0.6*floor.force"/><friction name="left" velocity="vz" across="vw" force="0.4*30" stiction="stiction*30"/></system>"""
 
 
 @pytest.fixture(scope="module", autouse=True)
 def built():
-    build_systems("indeterminate", {"LoadedLadder": LADDER, "ThreeFeet": FEET, "GuidedBlock": GUIDE})
+    build_systems("indeterminate", {"LoadedLadder": LADDER, "ThreeFeet": FEET, "GuidedBlock": GUIDE, "LiftedPair": PAIR, "LiftedPairOnPlane": PLANE_PAIR})
 
 
 def largest_pull(mu1, mu2, q):
@@ -122,3 +133,36 @@ def test_a_guide_with_stiction_holds_beside_a_floor():
     assert instance.get("vx") == pytest.approx(0.0, abs=1e-12)
     instance.step(2.0 + 1e-4)
     assert instance.get("vx") == pytest.approx((13**2 - 11**2) / 4 - 10 * 2 / 2, abs=1e-4)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
+@pytest.mark.parametrize("stiction", [0.4, 0.5])
+def test_a_block_that_is_lifted_leaves_its_load_to_the_other(stiction, tolerance):
+    """A rod joins them. The lifted one keeps a share of its falling limit, without an event for each part that it loses."""
+    instance = Instance("LiftedPair").initialize({"stiction": stiction}, tolerance=tolerance)
+    rest_while_lifted(instance, stiction, lambda: instance.get("lifted.force", "left.force"))
+    start = 120 * stiction
+    to(instance, start - 1e-3)
+    assert instance.get("vx", "vz") == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert instance.get("y") == pytest.approx((start - 1e-3 - 5) ** 3 / 3, rel=1e-6)
+    to(instance, start + 2)
+    assert instance.get("vz") == pytest.approx(((start + 2) ** 2 - start**2) / 40 - 12 * 2 / 5, rel=1e-5)
+    assert value(instance, "events") < 20
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-8])
+def test_a_block_that_is_lifted_leaves_its_load_in_a_plane(tolerance):
+    instance = Instance("LiftedPairOnPlane").initialize(tolerance=tolerance)
+    rest_while_lifted(instance, 0.4, lambda: [0.6 * instance.get(f"{name}.force") + 0.8 * instance.get(f"{name}.across.force") for name in ("lifted", "left")])
+    to(instance, 50)
+    assert instance.get("vz", "vw") == pytest.approx([0.06, 0.08], rel=1e-5)
+    assert value(instance, "events") < 20
+
+
+def rest_while_lifted(instance, stiction, forces):
+    for time in (2.0, 4.0, 4.9, 4.97, 4.99, 4.9999, 5 - 1e-7):
+        to(instance, time)
+        floor, (lifted, left) = instance.get("floor.force"), forces()
+        assert floor == pytest.approx(20 - 4 * time, abs=1e-9) and lifted + left == pytest.approx(time / 4, rel=1e-12)
+        assert abs(lifted) <= 0.6 * floor * (1 + 1e-9) and abs(left) <= stiction * 30
+        assert [value(instance, f"{name}.sliding") for name in ("lifted", "left")] == [0, 0]

@@ -49,6 +49,7 @@ struct FrictionState {
   bool is_near_limit; /* the force is, as located; others may have taken a share of it since */
   bool is_moving;     /* faster than rounding errors */
   bool has_no_force;  /* as with mu = 0: rounding would decide on sticking */
+  bool has_share;     /* at rest it acts with a share of its force, as others constrain its velocity */
 };
 
 static void take_direction(const struct Resolution *resolution, size_t friction, struct FrictionState *state) {
@@ -104,6 +105,7 @@ static struct FrictionState friction_state(const struct Resolution *resolution, 
   if (is_at_zero && !state.may_jump)
     is_faster = state.has_no_force && fabs(state.velocity) > FLOOR_IN_ERROR_BOUND * rounding;
   state.is_moving = is_faster;
+  state.has_share = state.mode != 0.0 && carried_share(resolution->instance, friction) != 0.0;
   return state;
 }
 
@@ -173,7 +175,8 @@ bool friction_is_even(const struct Resolution *resolution, size_t friction) {
 bool friction_rests_at_limit(const struct Resolution *resolution, size_t friction) {
   struct FrictionState state = friction_state(resolution, friction);
   bool is_still = !state.is_moving && fabs(state.rate) <= state.error_bound_of_rate;
-  return state.mode != 0.0 && is_still && !state.has_no_force && friction_is_even(resolution, friction);
+  bool is_at_limit = state.mode != 0.0 && !state.has_share;
+  return is_at_limit && is_still && !state.has_no_force && friction_is_even(resolution, friction);
 }
 
 bool friction_is_overcome(const struct Resolution *resolution, size_t friction) {
@@ -193,8 +196,15 @@ static double mode_from_sliding(const struct Resolution *resolution, const struc
   return leaves ? state->mode : 0.0;
 }
 
+/* Returns the mode of a friction that acts with a share of its force: it sticks once its velocity is not constrained. */
+static double mode_with_share(const struct FrictionState *state) {
+  if (state->is_moving) return state->velocity > 0.0 ? 1.0 : -1.0;
+  return fabs(state->rate) > state->error_bound_of_rate ? 0.0 : state->mode;
+}
+
 /* Returns the mode that agrees with Coulomb's law; the present one if nothing contradicts it. */
 static double friction_mode(const struct Resolution *resolution, const struct FrictionState *state) {
+  if (state->has_share) return mode_with_share(state);
   if (state->has_no_force) return mode_without_force(state);
   if (state->is_moving && state->may_jump) return state->velocity > 0.0 ? 1.0 : -1.0;
   return state->mode == 0.0 ? mode_from_rest(resolution, state) : mode_from_sliding(resolution, state);
@@ -287,7 +297,8 @@ const char *frictions_act(struct Resolution *resolution, bool *switched) {
     if (is_in_plane(switches, i) || switches->frictions[i].is_given) continue;
     struct FrictionState state = friction_state(resolution, i);
     double mode = friction_mode(resolution, &state);
-    if (mode == state.mode || (keeps_overcome && friction_is_overcome(resolution, i))) continue;
+    bool is_kept = mode == state.mode && !(state.has_share && state.is_moving);
+    if (is_kept || (keeps_overcome && friction_is_overcome(resolution, i))) continue;
     if (++resolution->flips[friction_indicator(resolution->switches, i)] > FRICTION_FLIP_LIMIT) {
       *switched = jams_resolve(resolution) || resolution_ends_slip(resolution);
       return *switched                         ? NULL
@@ -324,6 +335,8 @@ static size_t count_redundant(struct Resolution *resolution) {
 bool frictions_find_constrained(struct Resolution *resolution, size_t friction, bool *is_constrained) {
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   double *mode = &resolution->instance->parameter[metadata->mode], kept = *mode;
+  if (kept == 0.0) *mode = 1.0;
+  resolution->instance->parameter_constants_are_stale = true;
   size_t without = count_redundant(resolution);
   *mode = 0.0;
   resolution->instance->parameter_constants_are_stale = true;

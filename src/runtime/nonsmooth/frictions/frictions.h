@@ -10,8 +10,8 @@ bool frictions_report(struct Resolution *resolution, bool *again);
 const char *frictions_check(struct Resolution *resolution);
 
 /*
- * Sets *is_constrained if other constraints fix the velocity, in a plane both velocities, of a friction that counts as
- * sliding. False if that cannot be determined.
+ * Sets *is_constrained if other constraints fix the velocity of a friction, in a plane both velocities. False if that
+ * cannot be determined.
  */
 bool frictions_find_constrained(struct Resolution *resolution, size_t friction, bool *is_constrained);
 

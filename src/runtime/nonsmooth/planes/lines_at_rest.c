@@ -40,6 +40,15 @@ void line_release(struct Resolution *resolution, size_t friction, double share) 
   set_line(resolution, friction, 1.0, share - 1.0);
 }
 
+void line_keep(struct Resolution *resolution, size_t friction) {
+  const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
+  const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
+  double share = force_on_line(resolution, friction) / value[FRICTION_FORCE],
+         limit = metadata->has_static_limit ? value[FRICTION_STICTION] / value[FRICTION_FORCE] : 1.0;
+  line_release(resolution, friction, share + 1.0 - limit);
+  resolution_set_mode(resolution, metadata->reported, 0.0);
+}
+
 void lines_stick(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++) {
     if (is_in_plane(resolution->switches, i) || *part_of_friction(resolution, i) == LEFT_OUT) continue;

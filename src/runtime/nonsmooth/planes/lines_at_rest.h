@@ -13,6 +13,12 @@ void lines_choose(const struct Resolution *resolution);
 void line_carry(struct Resolution *resolution, size_t friction, double share);
 void line_release(struct Resolution *resolution, size_t friction, double share);
 
+/*
+ * Keeps the force of a friction that sticks, without its constraint, while others constrain its velocity. It is
+ * reported as sticking.
+ */
+void line_keep(struct Resolution *resolution, size_t friction);
+
 /* Lets those that take part stick. */
 void lines_stick(struct Resolution *resolution);
 

@@ -212,21 +212,34 @@ static void take_planes(struct RestForces *forces) {
   }
 }
 
+/* Keeps the force of a friction that sticks, without its constraint. */
+static void release_row(const struct RestForces *forces, size_t row) {
+  if (row_is_of_line(forces, row)) {
+    line_keep(forces->resolution, forces->impulses.member[row]);
+    return;
+  }
+  struct PlaneState state = state_of_row(forces, row);
+  plane_carry(forces->resolution, &state, state.force);
+  plane_release(forces->resolution, &state);
+}
+
 /*
  * Weak frictions are those whose contacts are about to open. They keep their forces without constraints if others
  * constrain their velocities. Their constraints would take too much of a changing load again and again. False if that
  * cannot be determined.
  */
 static bool release_weak(struct RestForces *forces) {
-  double most = largest_stiction(forces->resolution);
-  bool is_determined = true;
-  for (size_t row = forces->impulses.contact_count; row < forces->lines && is_determined; row += 2) {
-    struct PlaneState state = state_of_row(forces, row);
-    bool is_constrained = false;
-    if (rest_slips(forces, row) || state.stiction >= weak_share * most) continue;
-    plane_release(forces->resolution, &state);
-    is_determined = frictions_find_constrained(forces->resolution, state.metadata->along, &is_constrained);
-    if (!is_constrained) plane_hold(forces->resolution, &state);
+  struct Resolution *resolution = forces->resolution;
+  double most = largest_stiction(resolution);
+  bool is_determined = true, is_constrained = false;
+  for (size_t row = forces->impulses.contact_count; row < forces->n && is_determined;
+       row += rows_of_friction(forces, row)) {
+    size_t friction = forces->impulses.member[row];
+    const double *value = &resolution->value[friction_slot(resolution->switches, friction, 0)];
+    bool is_weak = value[FRICTION_FORCE] > 0.0 && value[FRICTION_STICTION] < weak_share * most;
+    if (!is_weak || rest_slips(forces, row) || !friction_sticks(resolution, friction)) continue;
+    is_determined = frictions_find_constrained(resolution, friction, &is_constrained);
+    if (is_constrained) release_row(forces, row);
   }
   return is_determined;
 }

@@ -98,12 +98,8 @@ static void set_plane_mode(struct Resolution *resolution, const struct PlaneStat
   resolution_set_mode(resolution, state->metadata->upper, upper);
 }
 
-void plane_hold(struct Resolution *resolution, const struct PlaneState *state) {
-  set_plane_mode(resolution, state, PLANE_STICKS, state->is_given ? 3.0 * state->none : state->none, -unreached);
-}
-
 void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]) {
-  plane_hold(resolution, state);
+  set_plane_mode(resolution, state, PLANE_STICKS, state->is_given ? 3.0 * state->none : state->none, -unreached);
   for (int i = 0; i < 2; i++) {
     double share = state->sliding > 0.0 ? force[i] / state->sliding : 0.0;
     resolution_set_mode(resolution, state->metadata->slip_direction[i], share);

@@ -64,13 +64,8 @@ void plane_stick(struct Resolution *resolution, const struct PlaneState *state);
 /* Lets the friction stick with a given force; its constraint carries the rest of the load. */
 void plane_carry(struct Resolution *resolution, const struct PlaneState *state, const double force[2]);
 
-/*
- * Release, and constrain again, a friction whose velocity other constraints keep at 0. plane_release() keeps the
- * given force as a friction force without a constraint. plane_hold() lets the friction stick again, with the same
- * force.
- */
+/* Keeps the given force of a friction without its constraint, where others keep its velocity at 0. */
 void plane_release(struct Resolution *resolution, const struct PlaneState *state);
-void plane_hold(struct Resolution *resolution, const struct PlaneState *state);
 
 /* Lets the friction slide until it is slow; a slow one until it is much slower or faster than at present. */
 void plane_slide(struct Resolution *resolution, const struct PlaneState *state);
