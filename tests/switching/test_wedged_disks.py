@@ -39,14 +39,14 @@ def built():
     build_systems("wedged-disks", {"Wedge": wedge()})
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3, 4])
+@pytest.mark.parametrize("seed", [0, 1, 2, 3, 27])
 def test_wedged_disks_come_to_rest(seed):
     random = np.random.default_rng(seed)
     start = {f"v{axis}{i}": random.uniform(-0.5, 0.5) for axis in "xy" for i in range(COUNT)} | {f"w{i}": random.uniform(-5, 5) for i in range(COUNT)}
     instance = fmu.Instance("Wedge").initialize(start, tolerance=1e-6)
     energy = instance.get("totalEnergy")
-    for _ in range(100):
-        instance.step(0.02)
+    for k in range(100):
+        instance.fmu.doStep(k * 0.02, 0.02)  # rounded otherwise than the end of the last step
         before, energy = energy, instance.get("totalEnergy")
         assert energy < before + 1e-5
         x, y = (np.array(instance.get(*(f"{axis}{i}" for i in range(COUNT)))) for axis in "xy")

@@ -44,6 +44,14 @@ static bool is_on_constraints(struct Instance *instance, double time) {
   return evaluate_prepare(instance) == STATUS_DONE && solver_project(instance, time, instance->event_state) == NULL;
 }
 
+/* Takes the modes of the last step where none agree with the state; else opens all contacts. False if that fails. */
+static bool take_provisional_modes(struct Instance *instance, double time) {
+  if (is_on_constraints(instance, time)) return true;
+  struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_CHANGE);
+  lagrangian.switches->sliding_laws->release(&resolution);
+  return is_on_constraints(instance, time);
+}
+
 /* Warns once. longest: in s; to which time steps may grow. */
 static void report_steps(struct Instance *instance, double time, double longest) {
   if (instance->reported_time_steps) return;
@@ -77,8 +85,7 @@ bool step_over_events(struct Instance *instance, double until, double end, doubl
     bool is_end = length >= end - *time;
     *time = is_end ? end : *time + length;
     if (!is_end && *time < until) continue;
-    /* At the end, the modes of the step itself have to do. */
-    if (!modes_agree(instance, *time, instance->event_state) && !(is_end && is_on_constraints(instance, *time)))
+    if (!modes_agree(instance, *time, instance->event_state) && !(is_end && take_provisional_modes(instance, *time)))
       continue;
     report_steps(instance, *time, longest);
     return true;

@@ -52,6 +52,11 @@ static const char usual_remedy[] = "retrying will not help; restore an earlier s
                                    "other parameters or other coordinates";
 static const char explained_remedy[] = "retrying will not help; restore an earlier state, and follow the last message";
 
+/* True if a step contains a time, within the rounding of an importer that adds or multiplies its steps. */
+static bool span_contains(const struct Span *span, double time) {
+  return solver_step_vanishes(span->start, span->start - time) && solver_step_vanishes(span->end, time - span->end);
+}
+
 /*
  * Brings the solver to the start of the step. It continues its last step if that contains the start and nothing was set
  * since; after a restored state it must be able to resume. Otherwise it restarts, from a state that fulfils the
@@ -62,7 +67,7 @@ static enum StepResult prepare_solver(struct Instance *instance, const struct Co
   struct FmuState *fmu_state = instance->fmu_state;
   if (instance->solver_memory == NULL && !solver->create(instance)) return STEP_FAILED;
   bool continues = !solver->starts_anew && fmu_state->changed == CHANGED_NOTHING &&
-                   step->start >= fmu_state->last_step.start && step->start <= fmu_state->last_step.end &&
+                   span_contains(&fmu_state->last_step, step->start) &&
                    (!instance->solver_is_stale || solver->resume != NULL);
   if (!continues) {
     fmu_state_begin(fmu_state, step->start);

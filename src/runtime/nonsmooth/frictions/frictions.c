@@ -15,6 +15,7 @@
 
 #include "detection/indicators.h"
 #include "nonsmooth/frictions/jams.h"
+#include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/tolerances.h"
 #include "evaluation/evaluate.h"
@@ -427,13 +428,24 @@ static bool is_within_error(struct Resolution *resolution, size_t slot) {
   return fabs(resolution->value[slot]) <= least_certainty * most;
 }
 
+/* True if a friction rests on a contact that pulls: the mode of a time step, until the next one opens it. */
+static bool rests_on_pulling(const struct Resolution *resolution, size_t friction) {
+  bool pulls = false;
+  for (size_t i = 0; i < resolution->switches->contact_count && !pulls; i++)
+    pulls = rests_on(resolution->switches, friction, i) && contact_holds(resolution->instance, i) &&
+            contact_force(resolution, i) < 0.0;
+  return pulls;
+}
+
 /* A negative friction force is a mistake of the model, such as a wrong sign of a force in it. */
 const char *frictions_check(struct Resolution *resolution) {
   double rounding = rounding_left_of_forces(resolution);
   for (size_t i = 0; i < resolution->switches->friction_count; i++) {
     size_t slot = friction_slot(resolution->switches, i, weaker_force(resolution, i));
     double force = resolution->value[slot];
-    if (!(force < -resolution->error_bound[slot] - rounding) || is_within_error(resolution, slot)) continue;
+    if (!(force < -resolution->error_bound[slot] - rounding) || rests_on_pulling(resolution, i) ||
+        is_within_error(resolution, slot))
+      continue;
     log_message(resolution->instance, resolution_status(resolution),
                 "time %g: the force of the friction '%s' is %g; expected 0 or more, such as abs(...)", resolution->time,
                 resolution->switches->frictions[i].name, force);

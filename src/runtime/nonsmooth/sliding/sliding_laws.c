@@ -139,4 +139,5 @@ const struct SlidingLaws sliding_laws = {.any_begins = any_begins_to_slide,
                                          .report_others = report_others,
                                          .end_slip = end_slip,
                                          .time_step = time_step,
+                                         .release = release_contacts,
                                          .explain = explain_jam_of_contact};

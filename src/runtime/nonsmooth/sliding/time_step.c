@@ -26,8 +26,7 @@ static const double reach = 4.0;
 /* Relative to the limit: a friction with a smaller impulse sticks. */
 static const double below_limit = 1e-9;
 
-/* Opens all contacts, and lets the frictions on them slide. */
-static void release_contacts(struct Resolution *resolution) {
+void release_contacts(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   for (size_t i = 0; i < switches->contact_count; i++) set_contact(resolution, i, false);
   for (size_t i = 0; i < switches->friction_count; i++)

@@ -10,3 +10,6 @@
  * is missing.
  */
 double time_step(struct Resolution *resolution, double share, double limit, double *longest);
+
+/* Opens all contacts, and lets the frictions on them slide: no other modes may agree with the state behind a step. */
+void release_contacts(struct Resolution *resolution);
