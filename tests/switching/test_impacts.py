@@ -182,7 +182,6 @@ SYSTEMS = {
     "FlatLanding": LANDING,
     "BallOnIncline": INCLINE,
     "BallOnBall": TOWER,
-    "Masses12": sledge("Masses12", 12),
     "Masses14": sledge("Masses14", 14),
 }
 
@@ -336,10 +335,11 @@ def motions(free, s):
     return found
 
 
-def test_forces_of_sliding_contacts_are_unique_or_an_error(open_fmu):
+def test_forces_of_sliding_contacts_are_found_where_there_are_any(open_fmu):
+    """The trial of all combinations knows all of them. Where there are several, compliance leads to one. Few are missed."""
     instance, other = open_fmu("RandomContacts"), open_fmu("RandomContactsTurned", logging=False)
     rng = np.random.default_rng(3)
-    counts = {0: 0, 1: 0, 2: 0}
+    counts, missed, warned = {0: 0, 1: 0, 2: 0}, 0, 0
     for _ in range(500):
         case = Contacts(rng, 2.0)
         k = case.count
@@ -352,17 +352,21 @@ def test_forces_of_sliding_contacts_are_unique_or_an_error(open_fmu):
         counts[min(len(found), 2)] += 1
         try:
             case.start(instance)
-            assert len(found) == 1
         except FMICallException as error:
-            assert error.status == ERROR and len(found) != 1, found
-            words = "more than one" if found else "no"
+            assert error.status == ERROR
+            missed += len(found) > 0
             text = instance.messages[-2][2]
-            assert f"has {words} solution" in text and "contact 'c" in text and "friction 'r" in text
+            assert "no force of the contact 'c" in text and "friction 'r" in text
             instance.messages.clear()
-            with pytest.raises(FMICallException):
-                case.start(other)
             continue
-        assert instance.get(*[f"c{i}.force" for i in range(k)]) == pytest.approx(found[0], rel=1e-7, abs=1e-9 * abs(found[0]).max())
+        forces = instance.get(*[f"c{i}.force" for i in range(k)])
+        assert any(forces == pytest.approx(solution, rel=1e-7, abs=1e-9 * abs(solution).max()) for solution in found), found
+        warned += reported_other_forces(instance) > 0
+        instance.messages.clear()
+        case.start(other)
+        swapped = other.get(*[f"c{i}.force" for i in range(k)])
+        assert any(swapped == pytest.approx(solution, rel=1e-7, abs=1e-9 * abs(solution).max()) for solution in found), found
+    assert missed <= 3 and warned > 3, (missed, warned)
     assert min(counts.values()) > 20, counts
 
 
@@ -374,12 +378,21 @@ def rod_pressure(theta, mu):
     return 1 + 3 * c * (c - mu * s)
 
 
-@pytest.mark.parametrize("w, words", [(0.0, "no solution"), (-4.0, "more than one solution")])
-def test_a_locking_rod_is_an_error(open_fmu, w, words):
+def test_a_locking_rod_is_an_error(open_fmu):
     assert rod_pressure(1.2, 2) < 0
     instance = open_fmu("PainleveRod")
-    with instance.fails(ERROR, rf"contact 'tip' has {words}, .*friction 'rub'.*Painleve"):
-        instance.initialize({"w": w, "vy": np.cos(1.2) * w})
+    with instance.fails(ERROR, "no force of the contact 'tip' is found, .*friction 'rub'.*Painleve"):
+        instance.initialize()
+
+
+def test_a_locking_rod_that_turns_parts(open_fmu):
+    """Its tip accelerates upwards. It could also press, but a smaller force would then fall to 0."""
+    w, theta = -4.0, 1.2
+    instance = open_fmu("PainleveRod").initialize({"w": w, "vy": np.cos(theta) * w})
+    assert instance.get("tip.force") == 0
+    to(instance, 1e-3)
+    assert instance.get("tip.force") == 0
+    assert instance.get("y") == pytest.approx(np.sin(theta) + np.cos(theta) * w * 1e-3 - G * 1e-6 / 2, abs=1e-12)
 
 
 @pytest.mark.parametrize("mu", [2.0, 1.6, 1.3])
@@ -458,23 +471,20 @@ def reported_other_forces(instance):
     return sum("may have another solution" in text for _, _, text in instance.messages)
 
 
-def test_contacts_that_are_too_many_to_try_all(open_fmu):
+def test_many_contacts_that_press_each_other(open_fmu):
     """
     Each force F satisfies F = 9.81 + k n F with k = 0.5 (mu - 0.5)/10, positive up to n k = 1. Beyond that a pull lifts all contacts, or
-    all press. For 12 contacts all combinations are tried; for 14 they are not.
+    all press with forces that a small change lets fall to 0.
     """
     instance = open_fmu("Masses14").initialize({"mu": 1})
     assert instance.get("c0.force", "c13.force") == pytest.approx(2 * [9.81 / (1 - 14 * 0.025)], rel=1e-9)
     assert reported_other_forces(instance) == 0
-    instance = open_fmu("Masses12")
-    with instance.fails(ERROR, "more than one solution"):
-        instance.initialize({"mu": 3.1, "pull": 400})
     instance = open_fmu("Masses14").initialize({"mu": 3.1, "pull": 400})
     for _ in range(3):
         instance.step(0.01)
-    assert reported_other_forces(instance) == 1 and instance.get("c0.force") == 0
+    assert instance.get("c0.force") == 0
     instance = open_fmu("Masses14")
-    with instance.fails(ERROR, "the contact 'c0' has perhaps no solution"):
+    with instance.fails(ERROR, "no force of the contact 'c0' is found"):
         instance.initialize({"mu": 3.1})
 
 

@@ -113,7 +113,7 @@ struct SlidingLaws {
    * nothing about other solutions.
    */
   bool (*any_begins)(const struct Resolution *resolution);
-  /* Finds what a message says if there is no solution, or not only one. */
+  /* Finds what a message says if no forces are found. */
   void (*find_paradox)(const struct Resolution *resolution, const struct RestingContacts *resting,
                        struct Paradox *paradox);
   /* Finds the forces of frictions in planes at rest too, or ends the slip. False if that fails. */
@@ -123,7 +123,7 @@ struct SlidingLaws {
    * and returns the reason to stop.
    */
   const char *(*resolve_paradox)(struct Resolution *resolution, const struct Paradox *paradox, bool *again);
-  /* Warns at most once an instance that the solution is not unique, or may not be. */
+  /* Warns at most once an instance that there may be other forces. */
   void (*report_others)(const struct Resolution *resolution, const struct RestingContacts *resting);
   /* Ends a slip of contacts without forces; false if there is none (end_slip.h). */
   bool (*end_slip)(struct Resolution *resolution);

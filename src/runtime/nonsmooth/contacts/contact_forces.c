@@ -9,12 +9,12 @@
  * Contacts with a friction that sticks are left as they are. Without friction S is symmetric and positive
  * semidefinite, and the accelerations are unique. With it there may be no solution or several (Painleve's paradox).
  *
- * The problem is set up after the frictions have their modes. It is needed if a friction slides on a contact at
- * rest, or if a contact that its force has opened would close again. If no open contact approaches, the present
- * forces are a solution, and only their uniqueness is examined (resting_forces.c). It is not examined while a
- * friction begins to slide, since its direction would differ in another solution. If an open contact approaches, the
- * solution found sets the contacts. If there is none, or not only one, an impulse may end the slip (sliding_laws.c).
- * Else the motion ends with a message.
+ * The problem is set up after the frictions have their modes. It is needed if a friction slides on a contact at rest, or
+ * if a contact that its force has opened would close again. If an open contact approaches, the solution sets the
+ * contacts. If none is found, an impulse may end the slip (sliding_laws.c). Else the motion ends with a message.
+ *
+ * If no open contact approaches, the present forces are a solution. At the start their stability is examined
+ * (resting_forces.c). It is not while a friction begins to slide, since its direction would differ in another solution.
  */
 #include "nonsmooth/contacts/contact_forces.h"
 
@@ -131,7 +131,6 @@ static void fill_resting(const struct Resolution *resolution, struct RestingCont
       if (contact_is_closed(resolution, impulses->member[j])) forces->free[i] -= s * force / resting->unit[j];
     }
   }
-  forces->lasts = resolution->occasion != AT_START;
   for (size_t j = 0; j < n; j++) {
     bool is_closed = contact_is_closed(resolution, impulses->member[j]);
     forces->present[j] = is_closed ? contact_force(resolution, impulses->member[j]) / resting->unit[j] : 0.0;
@@ -285,25 +284,25 @@ static bool take_solution(struct Resolution *resolution, const struct RestingCon
 const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   const struct SlidingLaws *laws = resolution->switches->sliding_laws; /* not NULL if frictions slide */
   struct RestingContacts resting;
-  struct Paradox paradox = {.how_many = NULL};
+  struct Paradox paradox = {.contact = NULL};
   *again = false;
   const char *problem;
   bool slides = choose_resting(resolution);
   if (!slides && !any_comes_back(resolution)) return NULL;
-  bool is_unclear = slides && laws->any_begins(resolution);
+  bool is_examined = slides && resolution->occasion == AT_START && !laws->any_begins(resolution);
   if (!create_resting(resolution, &resting, &problem)) return problem;
   slides &= resting.impulses.friction_count > 0;
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
-  if (slides && (closes || !is_unclear)) resting.solutions = resting_forces_solve(&resting.forces, !closes);
-  /* Where several motions exist, the impulses of a short step select one (end_slip.h). */
-  bool is_chosen = resting.solutions == SEVERAL_MOTIONS && !closes && resolution->continued_forces > 0;
+  if (slides && (closes || is_examined)) resting.solutions = resting_forces_solve(&resting.forces, !closes);
   bool is_crushed = !slides && closes && !resting_forces_press(&resting.forces);
-  if (resting.solutions > PERHAPS_OTHERS && !is_chosen) laws->find_paradox(resolution, &resting, &paradox);
-  else if (closes && !is_crushed) *again = take_solution(resolution, &resting);
-  if (resting.solutions == PERHAPS_OTHERS || is_chosen) laws->report_others(resolution, &resting);
+  bool changes = closes || resting.solutions == OTHER_MOTION;
+  if (resting.solutions == NO_MOTION) laws->find_paradox(resolution, &resting, &paradox);
+  else if (changes && !is_crushed) *again = take_solution(resolution, &resting);
+  if (resting.solutions == PERHAPS_OTHERS || resting.solutions == OTHER_MOTION)
+    laws->report_others(resolution, &resting);
   free_resting(resolution, &resting);
-  if (paradox.how_many != NULL) return laws->resolve_paradox(resolution, &paradox, again);
+  if (paradox.contact != NULL) return laws->resolve_paradox(resolution, &paradox, again);
   /* Frictions that stick may close a contact: they slip. */
   *again |= is_crushed && laws != NULL && laws->find_all_forces(resolution);
   return is_crushed && !*again ? contact_forces_report_crushed(resolution, sinking) : NULL;

@@ -30,9 +30,9 @@ struct RestingContacts {
   void *block;
 };
 
-/* The names and the number in a message about missing forces. */
+/* The names in a message about missing forces; NULL for none. */
 struct Paradox {
-  const char *contact, *friction, *how_many; /* how_many solutions there are */
+  const char *contact, *friction;
 };
 
 /*

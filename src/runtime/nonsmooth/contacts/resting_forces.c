@@ -1,15 +1,15 @@
 /*
  * Solves a = free + S F, a >= 0, F >= 0, F^T a = 0, in groups of contacts that S couples. Cholesky's factorization
  * shows whether the symmetric part of S is positive definite. If so, the solution exists and is unique (Cottle,
- * Pang and Stone, The Linear Complementarity Problem, chapter 3). Else all 2^n active sets are tried, in groups of
- * n <= COMBINED_LIMIT contacts. F of an active set follows from a = 0 on it, by elimination, at a cost of O(2^n
- * n^3). Active sets with a singular matrix are skipped. Solutions with equal accelerations count as one motion. In
- * larger groups cone_search.c finds one solution, if any; whether there are others stays unknown.
+ * Pang and Stone, The Linear Complementarity Problem, chapter 3). Else there may be none, or several. Then the solution
+ * is that to which damped compliant contacts lead from the present forces (P. E. Dupont and S. P. Yamajako: Stability of
+ * frictional contact in constrained rigid-body dynamics, IEEE Transactions on Robotics and Automation 13, 1997). During a
+ * motion, present forces that are a solution are kept: another one would need a jump that nothing causes. At the start they
+ * are kept unless a small change lets them go over to another one. Where compliant contacts
+ * do not come to rest, contacts are exchanged one by one between those that press and the others (the same book, chapter
+ * 4). That ends at a solution for P-matrices, and at nearly all others that have one.
  *
  * Without sliding friction S is symmetric, and the accelerations are unique. All contacts are then solved at once.
- *
- * If several solutions exist during a motion, the present forces are kept if they are stable under compliance. If they
- * are not a solution, because a contact closes, damped compliant contacts lead from them to one.
  */
 #include "nonsmooth/contacts/resting_forces.h"
 
@@ -19,8 +19,11 @@
 #include "nonsmooth/cones/cone_search.h"
 #include "support/elimination.h"
 
-/* Contacts of a group up to which all active sets are tried: at most 4096. */
-enum { COMBINED_LIMIT = 12 };
+/* Operations on forces in a group, of which a step of damped compliant contacts takes n^2: about 10 ms. */
+static const double most_work = 1e7;
+
+/* Forces that grow beyond this number of free accelerations have no limit. */
+static const double endless_force = 1e6;
 
 /* S is positive definite if the pivots of its symmetric part exceed the square of this; S_ii = 1 without friction. */
 static const double locking_share = 1e-3;
@@ -28,12 +31,15 @@ static const double locking_share = 1e-3;
 /* Smaller elements of S are rounding errors and couple no contacts; S is scaled to a size of 1. */
 static const double least_coupling = 1e-13;
 
+/* Exchanges for each contact before a solution counts as missing. */
+enum { EXCHANGES = 8 };
+
 static size_t work_count(const struct ConePath *path, size_t count) {
   return count * count + 2 * count + pressing_forces_work_count(path, count);
 }
 
 size_t resting_forces_bytes(const struct ConePath *path, size_t count) {
-  return (count * count + 6 * count + work_count(path, count)) * sizeof(double) + count * sizeof(size_t);
+  return (count * count + 7 * count + work_count(path, count)) * sizeof(double) + count * sizeof(size_t);
 }
 
 struct RestingForces resting_forces_in(void *block, const struct ConePath *path, size_t count) {
@@ -44,7 +50,8 @@ struct RestingForces resting_forces_in(void *block, const struct ConePath *path,
   resting.found_force = resting.found + count;
   resting.force = resting.found_force + count;
   resting.motion = resting.force + count;
-  resting.work = resting.motion + count;
+  resting.presses = resting.motion + count;
+  resting.work = resting.presses + count;
   resting.group = (size_t *)(resting.work + work_count(path, count));
   return resting;
 }
@@ -102,23 +109,6 @@ static bool is_surely_one(const struct RestingForces *resting) {
   return true;
 }
 
-/* Finds the forces that keep a = 0 on an active set, a bit for each contact. False if S is singular there. */
-static bool find_forces(const struct RestingForces *resting, unsigned combination) {
-  size_t member[COMBINED_LIMIT], count = 0;
-  double *a = resting->work;
-  for (size_t i = 0; i < resting->group_count; i++)
-    if ((combination >> i & 1u) != 0) member[count++] = i;
-  size_t width = count + 1;
-  for (size_t i = 0; i < count; i++) {
-    for (size_t j = 0; j < count; j++) a[i * width + j] = between(resting, member[i], member[j]);
-    a[i * width + count] = -resting->free[resting->group[member[i]]];
-  }
-  if (!solve_by_elimination(count, a, usual_least_pivot)) return false;
-  for (size_t i = 0; i < resting->group_count; i++) resting->force[resting->group[i]] = 0.0;
-  for (size_t i = 0; i < count; i++) resting->force[resting->group[member[i]]] = a[i * width + count];
-  return true;
-}
-
 /* True if no force is negative and no gap closes. Stores the accelerations in motion. */
 static bool is_solution(const struct RestingForces *resting, double size) {
   bool is_fine = true;
@@ -153,17 +143,6 @@ static void note_solution(const struct RestingForces *resting) {
   }
 }
 
-/* Counts the motions by trying all active sets, up to the second motion; stores the first one. */
-static enum RestingSolutions count_motions(const struct RestingForces *resting, double size) {
-  int count = 0;
-  for (unsigned combination = 0; combination < 1u << resting->group_count && count < 2; combination++) {
-    if (!find_forces(resting, combination) || !is_solution(resting, size)) continue;
-    if (count > 0 && is_same_motion(resting, size)) continue;
-    if (count++ == 0) note_solution(resting);
-  }
-  return count == 0 ? NO_MOTION : count == 1 ? ONE_MOTION : SEVERAL_MOTIONS;
-}
-
 /* Finds the forces of a group at free accelerations scaled to a size of 1. False if none are found. */
 static bool find_in_group(const struct RestingForces *resting, double size) {
   size_t n = resting->group_count;
@@ -182,29 +161,25 @@ static bool find_in_group(const struct RestingForces *resting, double size) {
  * if they do not come to rest at a solution. Stores its accelerations in motion.
  */
 static bool relax_forces(const struct RestingForces *resting, double size) {
-  const int steps = 20000; /* enough where the eigenvalues of S exceed 1e-3 of its largest element */
   const double rest = 1e-3 * rounded_force;
   size_t n = resting->group_count;
-  double largest = 0.0, *next = resting->work, change = INFINITY;
+  double largest = 0.0, *next = resting->work, change = INFINITY, most = 0.0;
   for (size_t i = 0; i < n; i++)
     for (size_t j = 0; j < n; j++) largest = fmax(largest, fabs(between(resting, i, j)));
   double step = 1.0 / (largest * (double)n);
-  for (int k = 0; k < steps && change > rest * size; k++) {
-    change = 0.0;
+  for (double work = 0.0; work < most_work && change > rest * size && most < endless_force * size;
+       work += (double)(n * n)) {
+    change = most = 0.0;
     for (size_t i = 0; i < n; i++) {
       double rate = resting->free[resting->group[i]], force = resting->force[resting->group[i]];
       for (size_t j = 0; j < n; j++) rate += between(resting, i, j) * resting->force[resting->group[j]];
       next[i] = fmax(force - step * rate, 0.0);
       change = fmax(change, fabs(next[i] - force));
+      most = fmax(most, next[i]);
     }
     for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = next[i];
   }
   return is_solution(resting, size);
-}
-
-static void take_present(const struct RestingForces *resting) {
-  for (size_t i = 0; i < resting->group_count; i++)
-    resting->force[resting->group[i]] = resting->present[resting->group[i]];
 }
 
 /* Returns the smallest of the present forces that press; size if none does. */
@@ -217,39 +192,80 @@ static double smallest_force(const struct RestingForces *resting, double size) {
   return smallest;
 }
 
-/*
- * True if the present forces are stable under compliance: after a small change they return to the same motion (P. E.
- * Dupont and S. P. Yamajako: Stability of frictional contact in constrained rigid-body dynamics, IEEE Transactions on
- * Robotics and Automation 13, 1997). Then the motion continues, although there may be other solutions.
- */
-static bool is_stable(const struct RestingForces *resting, double size) {
-  double nudge = 1e-3 * smallest_force(resting, size);
-  take_present(resting);
-  if (!is_solution(resting, size)) return false;
-  note_solution(resting);
-  for (size_t i = 0; i < resting->group_count; i++)
-    if (resting->force[resting->group[i]] > nudge) resting->force[resting->group[i]] += i % 2 == 0 ? nudge : -nudge;
-  return relax_forces(resting, size) && is_same_motion(resting, size);
+/* Takes the present forces, each less a nudge if it presses: unstable ones fall from there. */
+static void take_present(const struct RestingForces *resting, double nudge) {
+  for (size_t i = 0; i < resting->group_count; i++) {
+    double force = resting->present[resting->group[i]];
+    resting->force[resting->group[i]] = force > nudge ? force - nudge : force;
+  }
 }
 
-/* Counts the motions. During a motion, it takes that of several which the present forces lead to under compliance. */
-static enum RestingSolutions choose_motion(const struct RestingForces *resting, bool is_solved, double size) {
-  enum RestingSolutions solutions = count_motions(resting, size);
-  if (solutions != SEVERAL_MOTIONS || is_solved || !resting->lasts) return solutions;
-  take_present(resting);
-  if (!relax_forces(resting, size)) return solutions;
+/* Keeps the present forces, which are a solution, unless compliance leads from them to another one. */
+static enum RestingSolutions examine_present(const struct RestingForces *resting, double size) {
+  take_present(resting, 0.0);
+  is_solution(resting, size);
   note_solution(resting);
-  return ONE_MOTION;
+  take_present(resting, 1e-3 * smallest_force(resting, size));
+  if (!relax_forces(resting, size)) return PERHAPS_OTHERS;
+  if (is_same_motion(resting, size)) return ONE_MOTION;
+  note_solution(resting);
+  return OTHER_MOTION;
+}
+
+/* Finds the forces that keep a = 0 where contacts press; the others have none. False if S is singular there. */
+static bool find_pressing_forces(const struct RestingForces *resting) {
+  size_t n = resting->group_count, width = n + 1;
+  double *a = resting->work;
+  for (size_t i = 0; i < n; i++) {
+    for (size_t j = 0; j < n; j++)
+      a[i * width + j] = resting->presses[i] * resting->presses[j] != 0.0 ? between(resting, i, j) : i == j ? 1.0 : 0.0;
+    a[i * width + n] = -resting->presses[i] * resting->free[resting->group[i]];
+  }
+  if (!solve_by_elimination(n, a, usual_least_pivot)) return false;
+  for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = a[i * width + n];
+  return true;
+}
+
+/* Exchanges the contact that pulls, or whose gap closes, most. */
+static void exchange_worst(const struct RestingForces *resting) {
+  size_t worst = 0;
+  double most = -INFINITY;
+  for (size_t i = 0; i < resting->group_count; i++) {
+    size_t contact = resting->group[i];
+    double violation = resting->presses[i] != 0.0 ? -resting->force[contact] : -resting->motion[contact];
+    if (violation <= most) continue;
+    worst = i;
+    most = violation;
+  }
+  resting->presses[worst] = 1.0 - resting->presses[worst];
+}
+
+/* Exchanges contacts, from those that press at present, or from all. False if no solution is reached. */
+static bool exchange_contacts(const struct RestingForces *resting, bool from_all, double size) {
+  size_t n = resting->group_count;
+  for (size_t i = 0; i < n; i++)
+    resting->presses[i] = from_all || resting->present[resting->group[i]] > 0.0 ? 1.0 : 0.0;
+  for (size_t count = 0; count < EXCHANGES * n; count++) {
+    if (!find_pressing_forces(resting)) return false;
+    if (is_solution(resting, size)) return true;
+    exchange_worst(resting);
+  }
+  return false;
+}
+
+/* Finds a solution where the present forces are none. is_one: it is the only one. */
+static enum RestingSolutions find_solution(const struct RestingForces *resting, bool is_one, double size) {
+  take_present(resting, 0.0);
+  bool is_led = !is_one && relax_forces(resting, size);
+  if (!is_led && !exchange_contacts(resting, false, size) && !exchange_contacts(resting, true, size)) return NO_MOTION;
+  note_solution(resting);
+  return is_one || is_led ? ONE_MOTION : PERHAPS_OTHERS;
 }
 
 static enum RestingSolutions solve_group(const struct RestingForces *resting, bool is_solved, double size) {
-  bool is_one = is_surely_one(resting), is_small = resting->group_count <= COMBINED_LIMIT;
-  if (is_solved && (is_one || (is_small && resting->lasts && is_stable(resting, size)))) return ONE_MOTION;
-  if (is_small) return choose_motion(resting, is_solved, size);
-  if (!is_solved && !(find_in_group(resting, size) && is_solution(resting, size)))
-    return is_one ? NO_MOTION : PERHAPS_NONE;
-  if (!is_solved) note_solution(resting);
-  return is_one ? ONE_MOTION : PERHAPS_OTHERS;
+  bool is_one = is_surely_one(resting);
+  if (!is_solved) return find_solution(resting, is_one, size);
+  return is_one ? ONE_MOTION : examine_present(resting, size);
 }
 
 bool resting_forces_press(struct RestingForces *resting) {
@@ -270,8 +286,6 @@ enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool i
     collect_group(resting, i);
     if (resting->group[0] != i) continue; /* this group was handled before */
     enum RestingSolutions solutions = solve_group(resting, is_solved, size);
-    /* The present forces are a solution, even if rounding hides it among the active sets. */
-    if (is_solved && solutions == NO_MOTION) solutions = ONE_MOTION;
     if (solutions > worst) worst = solutions;
   }
   return worst;

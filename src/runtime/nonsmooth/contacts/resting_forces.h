@@ -10,17 +10,20 @@ struct ConePath;
 struct RestingForces {
   size_t count;
   const struct ConePath *path; /* of the switch table */
-  bool lasts;                  /* the motion has led to the present forces; false at the start */
   double *s, *free;
   double *present;             /* the present forces; 0 for open contacts */
   double *found, *found_force; /* accelerations and forces of the first solution */
   double *force, *motion;      /* of the present trial: forces, accelerations */
+  double *presses;             /* of each contact of the group: 1 if it presses, else 0 */
   double *work;
   size_t *group, group_count; /* rows coupled by S with each other, but with no others */
 };
 
-/* Ordered from best to worst. PERHAPS_OTHERS: one was found. PERHAPS_NONE: none was found, but may exist. */
-enum RestingSolutions { ONE_MOTION, PERHAPS_OTHERS, SEVERAL_MOTIONS, PERHAPS_NONE, NO_MOTION };
+/*
+ * Ordered from best to worst. ONE_MOTION: the only one, or that to which compliance leads from the present forces.
+ * PERHAPS_OTHERS: one was found. OTHER_MOTION: compliance leads from the present one to another. NO_MOTION: none was found.
+ */
+enum RestingSolutions { ONE_MOTION, PERHAPS_OTHERS, OTHER_MOTION, NO_MOTION };
 
 /* Forces and accelerations below this fraction of the largest free acceleration may be rounding errors. */
 static const double rounded_force = 1e-9;
@@ -41,9 +44,7 @@ double largest_free_acceleration(const struct RestingForces *resting);
 bool resting_forces_press(struct RestingForces *resting);
 
 /*
- * Determines whether the solution exists and is unique in its accelerations. is_solved: the present forces are a
- * solution. If they last and are stable, they count as unique. Otherwise a solution is stored in found and found_force.
- * Groups of up to 12 contacts are enumerated up to a second solution. In larger groups cone_search.c finds one, and a
- * sufficient condition decides on uniqueness.
+ * Finds the forces. is_solved: the present ones are a solution. They are kept if there is no other solution, or if they
+ * are stable under compliance. Else a solution is stored in found and found_force.
  */
 enum RestingSolutions resting_forces_solve(struct RestingForces *resting, bool is_solved);

@@ -9,10 +9,6 @@
 #include "nonsmooth/sliding/time_step.h"
 #include "nonsmooth/tolerances.h"
 
-/* Number of solutions, as messages say it. */
-static const char *const numbers_of_solutions[] = {
-    [SEVERAL_MOTIONS] = "more than one", [PERHAPS_NONE] = "perhaps no", [NO_MOTION] = "no"};
-
 /* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
 static const double jamming_share = 1e-3;
 
@@ -44,8 +40,7 @@ static void find_paradox(const struct Resolution *resolution, const struct Resti
                          struct Paradox *paradox) {
   size_t row = find_locked(resting);
   *paradox = (struct Paradox){.contact = resolution->switches->contacts[resting->impulses.member[row]].name,
-                              .friction = locking_friction(resolution, &resting->impulses, row),
-                              .how_many = numbers_of_solutions[resting->solutions]};
+                              .friction = locking_friction(resolution, &resting->impulses, row)};
 }
 
 static bool find_all_forces(struct Resolution *resolution) {
@@ -56,24 +51,23 @@ static const char *resolve_paradox(struct Resolution *resolution, const struct P
   *again = find_all_forces(resolution);
   if (*again) return NULL;
   log_message(resolution->instance, resolution_status(resolution),
-              "time %g: the force of the contact '%s' has %s solution, as the friction '%s' slides and presses it "
+              "time %g: no force of the contact '%s' is found, as the friction '%s' slides and presses it "
               "together (Painleve's paradox); expected less friction, or another position",
-              resolution->time, paradox->contact, paradox->how_many, paradox->friction);
+              resolution->time, paradox->contact, paradox->friction);
   return "forces of contacts with friction are not determined";
 }
 
 static void report_others(const struct Resolution *resolution, const struct RestingContacts *resting) {
   const struct ContactImpulses *impulses = &resting->impulses;
   size_t contact = find_locked(resting);
-  const char *why = resting->solutions == SEVERAL_MOTIONS
-                        ? "have more than one solution; the motion is that which an impact of small rates leads to"
-                        : "may have another solution: too many contacts are coupled to exclude it";
   if (resolution->instance->reported_other_forces) return;
   resolution->instance->reported_other_forces = true;
-  log_message(resolution->instance, STATUS_WARNING,
-              "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', %s", resolution->time,
-              resolution->switches->contacts[impulses->member[contact]].name,
-              locking_friction(resolution, impulses, contact), why);
+  log_message(
+      resolution->instance, STATUS_WARNING,
+      "time %g: the forces of sliding contacts, such as '%s' with the friction '%s', may have another solution; "
+      "the motion is one that damped compliant contacts would have",
+      resolution->time, resolution->switches->contacts[impulses->member[contact]].name,
+      locking_friction(resolution, impulses, contact));
 }
 
 static bool any_begins_to_slide(const struct Resolution *resolution) {
