@@ -247,12 +247,26 @@ static bool continue_from(struct Instance *instance, const struct CommunicationS
   return true;
 }
 
+/* Warns once of time steps. longest: in s; to which they may grow. */
+static void report_steps(struct Instance *instance, double time, double longest, size_t last_indicator) {
+  char name[NAME_SIZE];
+  if (instance->reported_time_steps) return;
+  instance->reported_time_steps = true;
+  name_indicator(last_indicator, name, sizeof name);
+  log_message(
+      instance, STATUS_WARNING,
+      "time %g: events of %s and others follow each other endlessly; time steps pass them, here and each further "
+      "time; they are at most %.2g s long, and velocities have errors of what accelerations change in them",
+      time, name, longest);
+}
+
 /* Passes events by time steps from a time on, from where the state is known. False if that fails. */
 static bool step_over(struct Instance *instance, const struct CommunicationStep *step, double begin, double until,
                       struct EventProgress *progress) {
-  double time = begin;
+  double time = begin, longest = 0.0;
   if (!lagrangian.solver->interpolate(instance, begin, instance->event_state)) return false;
-  if (!step_over_events(instance, until, step->end, &progress->share, &time)) return false;
+  if (!step_over_events(instance, until, step->end, &progress->share, &time, &longest)) return false;
+  report_steps(instance, time, longest, progress->indicator);
   progress->close_events = progress->close_events_at_rest = 0;
   return continue_from(instance, step, time, progress);
 }

@@ -52,16 +52,6 @@ static bool take_provisional_modes(struct Instance *instance, double time) {
   return is_on_constraints(instance, time);
 }
 
-/* Warns once. longest: in s; to which time steps may grow. */
-static void report_steps(struct Instance *instance, double time, double longest) {
-  if (instance->reported_time_steps) return;
-  instance->reported_time_steps = true;
-  log_message(instance, STATUS_WARNING,
-              "time %g: events of contacts follow each other endlessly; time steps pass them, here and each further "
-              "time; they are at most %.2g s long, and velocities have errors of what accelerations change in them",
-              time, longest);
-}
-
 /* Takes a time step, or a shorter one if that has no impulses. Returns its length; 0 if none has. */
 static double take_time_step(struct Instance *instance, double time, double limit, double *share, double *longest) {
   *share = fmin(fmax(growth * *share, first_share), 1.0);
@@ -73,21 +63,20 @@ static double take_time_step(struct Instance *instance, double time, double limi
   return 0.0;
 }
 
-bool step_over_events(struct Instance *instance, double until, double end, double *share, double *time) {
+bool step_over_events(struct Instance *instance, double until, double end, double *share, double *time,
+                      double *longest) {
   const struct SwitchTable *switches = lagrangian.switches;
-  double longest = 0.0;
   bool has_events = switches->event_count > switches->sample_count;
   if (switches->sliding_laws == NULL || has_events || instance->stops_at_events) return false;
   if (switches->time_laws != NULL) end = fmin(end, next_sample(instance, *time));
   for (int i = 0; i < TIME_STEP_LIMIT && *time < end; i++) {
-    double length = take_time_step(instance, *time, end - *time, share, &longest);
+    double length = take_time_step(instance, *time, end - *time, share, longest);
     if (!(length > 0.0)) return false;
     bool is_end = length >= end - *time;
     *time = is_end ? end : *time + length;
     if (!is_end && *time < until) continue;
     if (!modes_agree(instance, *time, instance->event_state) && !(is_end && take_provisional_modes(instance, *time)))
       continue;
-    report_steps(instance, *time, longest);
     return true;
   }
   return false;

@@ -1,26 +1,27 @@
 /*
  * Solves a = free + S F, a >= 0, F >= 0, F^T a = 0, in groups of contacts that S couples. Cholesky's factorization
- * shows whether the symmetric part of S is positive definite. If so, the solution exists and is unique (Cottle,
- * Pang and Stone, The Linear Complementarity Problem, chapter 3). Else there may be none, or several. Then the solution
- * is that to which damped compliant contacts lead from the present forces (P. E. Dupont and S. P. Yamajako: Stability of
- * frictional contact in constrained rigid-body dynamics, IEEE Transactions on Robotics and Automation 13, 1997). During a
- * motion, present forces that are a solution are kept: another one would need a jump that nothing causes. At the start they
- * are kept unless a small change lets them go over to another one. Where compliant contacts
- * do not come to rest, contacts are exchanged one by one between those that press and the others (the same book, chapter
- * 4). That ends at a solution for P-matrices, and at nearly all others that have one.
+ * shows whether the symmetric part of S is positive definite. If so, the solution exists and is unique (R. W. Cottle, J.-S.
+ * Pang and R. E. Stone, The Linear Complementarity Problem, chapter 3). Else there may be none, or several. Then the
+ * solution is that to which damped compliant contacts lead from the present forces (P. E. Dupont and S. P. Yamajako:
+ * Stability of frictional contact in constrained rigid-body dynamics, IEEE Transactions on Robotics and Automation 13, 1997).
+ * Present forces that are a solution are kept, unless a small change lets them go over to another one.
+ *
+ * Compliant contacts may not come to rest. Then contacts are exchanged one by one between those that press and the others
+ * (chapter 4 of the book), from several starts.
  *
  * Without sliding friction S is symmetric, and the accelerations are unique. All contacts are then solved at once.
  */
 #include "nonsmooth/contacts/resting_forces.h"
 
 #include <math.h>
+#include <stdint.h>
 
 #include "arithmetic.h"
 #include "nonsmooth/cones/cone_search.h"
 #include "support/elimination.h"
 
-/* Operations on forces in a group, of which a step of damped compliant contacts takes n^2: about 10 ms. */
-static const double most_work = 1e7;
+/* Operations on forces in a group, of which a step of damped compliant contacts takes n^2: about 1 ms. */
+static const double most_work = 1e6;
 
 /* Forces that grow beyond this number of free accelerations have no limit. */
 static const double endless_force = 1e6;
@@ -31,8 +32,8 @@ static const double locking_share = 1e-3;
 /* Smaller elements of S are rounding errors and couple no contacts; S is scaled to a size of 1. */
 static const double least_coupling = 1e-13;
 
-/* Exchanges for each contact before a solution counts as missing. */
-enum { EXCHANGES = 8 };
+/* Starts of exchanges before a solution counts as missing, and exchanges for each contact from a start. */
+enum { STARTS = 32, EXCHANGES = 2 };
 
 static size_t work_count(const struct ConePath *path, size_t count) {
   return count * count + 2 * count + pressing_forces_work_count(path, count);
@@ -240,12 +241,18 @@ static void exchange_worst(const struct RestingForces *resting) {
   resting->presses[worst] = 1.0 - resting->presses[worst];
 }
 
-/* Exchanges contacts, from those that press at present, or from all. False if no solution is reached. */
-static bool exchange_contacts(const struct RestingForces *resting, bool from_all, double size) {
-  size_t n = resting->group_count;
-  for (size_t i = 0; i < n; i++)
-    resting->presses[i] = from_all || resting->present[resting->group[i]] > 0.0 ? 1.0 : 0.0;
-  for (size_t count = 0; count < EXCHANGES * n; count++) {
+/* Selects the contacts that press at a start: those at present, then all, then half of them at random. */
+static void choose_pressing(const struct RestingForces *resting, int start, uint32_t *random) {
+  for (size_t i = 0; i < resting->group_count; i++) {
+    *random = *random * 1664525u + 1013904223u; /* D. Knuth, The Art of Computer Programming 2, section 3.3.4 */
+    bool presses = start == 0 ? resting->present[resting->group[i]] > 0.0 : start == 1 ? true : (*random >> 31) != 0;
+    resting->presses[i] = presses ? 1.0 : 0.0;
+  }
+}
+
+/* Exchanges contacts from a start. False if no solution is reached. */
+static bool exchange_contacts(const struct RestingForces *resting, double size) {
+  for (size_t count = 0; count <= EXCHANGES * resting->group_count; count++) {
     if (!find_pressing_forces(resting)) return false;
     if (is_solution(resting, size)) return true;
     exchange_worst(resting);
@@ -253,11 +260,22 @@ static bool exchange_contacts(const struct RestingForces *resting, bool from_all
   return false;
 }
 
+/* Exchanges contacts from several starts. False if no solution is reached. */
+static bool search_by_exchanges(const struct RestingForces *resting, double size) {
+  uint32_t random = 1;
+  bool is_found = false;
+  for (int start = 0; start < STARTS && !is_found; start++) {
+    choose_pressing(resting, start, &random);
+    is_found = exchange_contacts(resting, size);
+  }
+  return is_found;
+}
+
 /* Finds a solution where the present forces are none. is_one: it is the only one. */
 static enum RestingSolutions find_solution(const struct RestingForces *resting, bool is_one, double size) {
   take_present(resting, 0.0);
   bool is_led = !is_one && relax_forces(resting, size);
-  if (!is_led && !exchange_contacts(resting, false, size) && !exchange_contacts(resting, true, size)) return NO_MOTION;
+  if (!is_led && !search_by_exchanges(resting, size)) return NO_MOTION;
   note_solution(resting);
   return is_one || is_led ? ONE_MOTION : PERHAPS_OTHERS;
 }
