@@ -19,6 +19,7 @@
 #include "arithmetic.h"
 #include "nonsmooth/cones/cone_search.h"
 #include "support/elimination.h"
+#include "support/next_random.h"
 
 /* Operations on forces in a group, of which a step of damped compliant contacts takes n^2: about 1 ms. */
 static const double most_work = 1e6;
@@ -34,6 +35,9 @@ static const double least_coupling = 1e-13;
 
 /* Starts of exchanges before a solution counts as missing, and exchanges for each contact from a start. */
 enum { STARTS = 32, EXCHANGES = 2 };
+
+/* Half of the numbers that next_random() returns are at least this. */
+static const uint32_t half_of_draws = 1u << 23;
 
 static size_t work_count(const struct ConePath *path, size_t count) {
   return count * count + 2 * count + pressing_forces_work_count(path, count);
@@ -244,8 +248,8 @@ static void exchange_worst(const struct RestingForces *resting) {
 /* Selects the contacts that press at a start: those at present, then all, then half of them at random. */
 static void choose_pressing(const struct RestingForces *resting, int start, uint32_t *random) {
   for (size_t i = 0; i < resting->group_count; i++) {
-    *random = *random * 1664525u + 1013904223u; /* D. Knuth, The Art of Computer Programming 2, section 3.3.4 */
-    bool presses = start == 0 ? resting->present[resting->group[i]] > 0.0 : start == 1 ? true : (*random >> 31) != 0;
+    bool is_drawn = next_random(random) >= half_of_draws;
+    bool presses = start == 0 ? resting->present[resting->group[i]] > 0.0 : start == 1 || is_drawn;
     resting->presses[i] = presses ? 1.0 : 0.0;
   }
 }

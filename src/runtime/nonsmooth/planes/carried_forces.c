@@ -1,7 +1,8 @@
 /*
  * Frictions and contacts can carry a given force beside that of their constraint. A <constraint> cannot. Where one holds
  * the same bodies, as a rod does, it takes a part of what was found. For the norm of all constraint forces is least. So
- * the frictions carry other loads c, with which their forces f are as found. With the orthogonal projector P onto the forces that share a load,
+ * the frictions carry other loads c, with which their forces f are as found. With the orthogonal projector P onto the
+ * forces that share a load,
  *
  *   f(c) = f(0) + (1 - P) c.
  *

@@ -45,7 +45,7 @@ void line_keep(struct Resolution *resolution, size_t friction) {
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   double share = force_on_line(resolution, friction) / value[FRICTION_FORCE],
          limit = metadata->has_static_limit ? value[FRICTION_STICTION] / value[FRICTION_FORCE] : 1.0;
-  line_release(resolution, friction, share + 1.0 - limit);
+  set_line(resolution, friction, 1.0, share - limit);
   resolution_set_mode(resolution, metadata->reported, 0.0);
 }
 
