@@ -228,6 +228,7 @@ struct SampleMetadata {
 
 struct ContactLaws;
 struct FrictionLaws;
+struct Instance;
 struct SlidingLaws;
 struct Resolution;
 struct TimeLaws;
@@ -253,6 +254,9 @@ struct SwitchTable {
   const struct FrictionLaws *friction_laws; /* resolution.h; NULL without frictions */
   const struct SlidingLaws *sliding_laws;   /* resolution.h; NULL if no friction follows from contacts */
   const struct ConePath *cone_path;         /* cones.h; NULL if no friction follows from contacts or is in a plane */
+  /* Moves the state on whatever events of contacts happen (time_steps.h); NULL with fewer than two contacts. */
+  bool (*step_over_events)(struct Instance *instance, double until, double end, double *share, double *time,
+                           double *longest);
   /* [friction * contact_count + contact]: true if the friction depends on the contact force; NULL if none does. */
   const bool *rests_on;
   /* Computes indicator[] as below: a sign change may change a mode. acceleration as for result(). */

@@ -72,12 +72,14 @@ RUNTIME = Layers(
     src/runtime/detection
     src/runtime/nonsmooth
     src/runtime/nonsmooth/cones
+    src/runtime/nonsmooth/cones/interior
     src/runtime/nonsmooth/contacts
     src/runtime/nonsmooth/frictions
     src/runtime/nonsmooth/sliding
     src/runtime/nonsmooth/planes
     src/runtime/nonsmooth/rests
     src/runtime/events
+    src/runtime/time_steps
     src/runtime/timing
     src/runtime/stepping
     src/runtime/fmi

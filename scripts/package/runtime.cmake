@@ -4,7 +4,7 @@
 #   solver_sources              in FMUs whose system refers to them
 get_filename_component(root ${CMAKE_CURRENT_LIST_DIR}/../.. ABSOLUTE)
 set(core_rooms instance evaluation stepping fmi)
-set(solver_rooms support methods methods/sundials detection nonsmooth nonsmooth/contacts nonsmooth/frictions nonsmooth/planes nonsmooth/cones nonsmooth/rests nonsmooth/sliding events timing)
+set(solver_rooms support methods methods/sundials detection nonsmooth nonsmooth/contacts nonsmooth/frictions nonsmooth/planes nonsmooth/cones nonsmooth/cones/interior nonsmooth/rests nonsmooth/sliding events time_steps timing)
 set(fmi2_rooms fmi2)
 set(fmi3_rooms fmi3)
 foreach(part core solver fmi2 fmi3)

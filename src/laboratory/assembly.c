@@ -25,6 +25,7 @@
 #include "random_numbers.h"
 #include "saddle.h"
 #include "support/lu.h"
+#include "time_steps/time_steps.h"
 
 extern const struct Solver solver_taylor, solver_radau, solver_auto, solver_exact;
 extern const struct ContactLaws contact_laws;
@@ -194,6 +195,7 @@ static struct SwitchTable *switches_of(const struct Program *program) {
     switches->friction_laws = switches_need_cone_path(switches) ? &plane_friction_laws : &friction_laws;
   if (switches_need_cone_path(switches)) switches->cone_path = &cone_path;
   if (switches->rests_on != NULL) switches->sliding_laws = &sliding_laws;
+  if (switches->contact_count > 1) switches->step_over_events = step_over_events;
   if (switches->resting_count > 0) switches->find_resting = resting_find;
   if (switches->timed_count > 0) switches->time_laws = &time_laws;
   return switches;

@@ -7,7 +7,7 @@
 #include "evaluation/services.h"
 #include "instance/scratch.h"
 #include "nonsmooth/cones/cone_impulses.h"
-#include "nonsmooth/cones/cone_interior.h"
+#include "nonsmooth/cones/interior/cone_interior.h"
 
 void *scratch_take(struct Instance *instance, enum ScratchUse use, size_t size) {
   (void)use;

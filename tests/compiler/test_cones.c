@@ -2,7 +2,7 @@
  * Forces in Coulomb friction cones: random problems, whose solutions are checked by the law itself, and closed forms of
  * frictions that share a load.
  */
-#include "nonsmooth/cones/cone_interior.h"
+#include "nonsmooth/cones/interior/cone_interior.h"
 
 #include "expressions.h"
 

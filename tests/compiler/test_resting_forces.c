@@ -1,6 +1,6 @@
 /*
- * Forces of sliding contacts, against closed forms: S = 1 - k J, with J all ones, gives -free/(1 - n k) for n closed
- * contacts.
+ * Forces of contacts at rest, against closed forms. Of those that slide, S = 1 - k J, with J all ones, gives
+ * -free/(1 - n k) for n closed contacts.
  */
 #include "nonsmooth/contacts/resting_forces.h"
 
@@ -57,11 +57,46 @@ static void test_many(void **state) {
   }
 }
 
+/*
+ * A bar of mass 1 and moment of inertia 1 rests on feet at -1, 0 and 1 m, with a load of 1 N at a distance x: three
+ * forces, but two equations. Up to x = 2/3 the forces of least norm are 1/3 + x_i x/2. Beyond it that of the first foot
+ * would be negative; then it is 0, and the others are 1 - x and x.
+ */
+static void test_least_forces(void **state) {
+  (void)state;
+  const double foot[] = {-1.0, 0.0, 1.0}, unit[] = {1.0, 1.0, 1.0};
+  for (int i = 0; i <= 9; i++) {
+    double x = 0.1 * i;
+    struct RestingForces resting = resting_forces_in(block, NULL, 3);
+    for (size_t k = 0; k < 3; k++) {
+      resting.free[k] = -(1.0 + foot[k] * x);
+      for (size_t j = 0; j < 3; j++) resting.s[3 * k + j] = 1.0 + foot[k] * foot[j];
+    }
+    assert_true(resting_forces_press(&resting, unit));
+    for (size_t k = 0; k < 3; k++) {
+      double tipping = k == 0 ? 0.0 : k == 1 ? 1.0 - x : x, spread = 1.0 / 3.0 + 0.5 * foot[k] * x;
+      assert_true(fabs(resting.found_force[k] - (x > 2.0 / 3.0 ? tipping : spread)) < 1e-7);
+      assert_true(fabs(resting.found[k]) < 1e-7);
+    }
+  }
+}
+
+/* Two contacts on opposite sides of a body that both close: no forces keep them open. */
+static void test_crushed(void **state) {
+  (void)state;
+  const double unit[] = {1.0, 1.0};
+  struct RestingForces resting = resting_forces_in(block, NULL, 2);
+  for (size_t i = 0; i < 2; i++) {
+    resting.free[i] = -1.0;
+    for (size_t j = 0; j < 2; j++) resting.s[2 * i + j] = i == j ? 1.0 : -1.0;
+  }
+  assert_false(resting_forces_press(&resting, unit));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_groups),
-      cmocka_unit_test(test_unstable_forces),
-      cmocka_unit_test(test_many),
+      cmocka_unit_test(test_groups),       cmocka_unit_test(test_unstable_forces), cmocka_unit_test(test_many),
+      cmocka_unit_test(test_least_forces), cmocka_unit_test(test_crushed),
   };
   return cmocka_run_group_tests_name("resting forces", tests, NULL, NULL);
 }

@@ -15,7 +15,7 @@ from scipy import sparse
 
 SOURCES = [
     "tests/c/cones.c", "src/runtime/support/elimination.c",
-    *(f"src/runtime/nonsmooth/cones/{name}.c" for name in ("active_set", "cones", "cone_impulses", "cone_interior", "cone_newton", "cone_search", "impulses")),
+    *(f"src/runtime/nonsmooth/cones/{name}.c" for name in ("active_set", "cones", "cone_impulses", "interior/cone_interior", "cone_newton", "cone_search", "impulses")),
 ]  # fmt: skip
 
 

@@ -84,9 +84,13 @@ static void write_runtime(FILE *file, const struct Program *program) {
     include_room(file, "nonsmooth/cones");
     include_room(file, "nonsmooth/contacts");
   }
+  if (switches->contact_count > 1) include_room(file, "time_steps");
   if (switches->friction_count > 0) include_room(file, "nonsmooth/frictions");
   if (switches->contact_count > 0 && switches->friction_count > 0) include_room(file, "nonsmooth/sliding");
-  if (has_planes(switches) || (switching != NULL && switching->rests != NULL)) include_room(file, "nonsmooth/planes");
+  if (has_planes(switches) || (switching != NULL && switching->rests != NULL)) {
+    include_room(file, "nonsmooth/cones/interior");
+    include_room(file, "nonsmooth/planes");
+  }
   if (switches->resting_count > 0) include_room(file, "nonsmooth/rests");
   if (switching != NULL && switching->timed_count > 0) include_room(file, "timing");
   fputs("#endif\n", file);

@@ -79,6 +79,11 @@ static void declare_laws(FILE *file, const struct SwitchTable *metadata) {
     fprintf(file, "extern const struct FrictionLaws %s;\n\n", friction_laws_of(metadata));
   if (switches_need_cone_path(metadata)) fputs("extern const struct ConePath cone_path;\n\n", file);
   if (metadata->rests_on != NULL) fputs("extern const struct SlidingLaws sliding_laws;\n\n", file);
+  if (metadata->contact_count > 1) {
+    fputs("bool step_over_events(struct Instance *instance, double until, double end, double *share, double *time,\n",
+          file);
+    fputs("                      double *longest);\n\n", file);
+  }
   if (metadata->resting_count > 0) fputs("void resting_find(struct Resolution *resolution);\n\n", file);
   if (metadata->timed_count > 0) fputs("extern const struct TimeLaws time_laws;\n\n", file);
 }
@@ -88,6 +93,7 @@ static void write_laws(FILE *file, const struct SwitchTable *metadata) {
   if (metadata->friction_count > 0) fprintf(file, "    .friction_laws = &%s,\n", friction_laws_of(metadata));
   if (switches_need_cone_path(metadata)) fputs("    .cone_path = &cone_path,\n", file);
   if (metadata->rests_on != NULL) fputs("    .sliding_laws = &sliding_laws,\n", file);
+  if (metadata->contact_count > 1) fputs("    .step_over_events = step_over_events,\n", file);
   if (metadata->resting_count > 0) fputs("    .find_resting = resting_find,\n", file);
   if (metadata->timed_count > 0) fputs("    .time_laws = &time_laws,\n", file);
   if (metadata->rests_on != NULL) fputs("    .rests_on = rests,\n", file);

@@ -17,7 +17,7 @@ static const double further = 8.0;
 /* Relative rounding error of an operation or a library function. */
 static const double rounding_of_operation = DBL_EPSILON;
 
-/* The same for the force of a friction, relative to it or to the force of its contact. */
+/* The same for forces of constraints, relative to the largest one that acts with them. */
 static const double rounding_of_force = 64.0 * DBL_EPSILON;
 
 double rounding_at_limit(const struct Instance *instance, const double *acceleration, size_t friction) {
@@ -27,6 +27,15 @@ double rounding_at_limit(const struct Instance *instance, const double *accelera
   for (size_t i = 0; i < switches->contact_count; i++)
     if (rests_on(switches, friction, i))
       size = fmax(size, fabs(force[switches->contacts[i].constraint]) + carried_force(instance, i));
+  return rounding_of_force * size;
+}
+
+double rounding_of_contacts(const struct Instance *instance, const double *acceleration) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  const double *force = acceleration + lagrangian.coordinate_count;
+  double size = 0.0;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    if (contact_holds(instance, i)) size = fmax(size, fabs(force[switches->contacts[i].constraint]));
   return rounding_of_force * size;
 }
 

@@ -45,6 +45,9 @@ bool indicator_error_bound(struct Instance *instance, double time, const double 
 /* Returns the sign that an indicator has while its mode stays: 1, -1, or 0 for a branch at rest at 0. */
 double indicator_sign(const struct Instance *instance, size_t indicator);
 
+/* Returns the rounding error of the forces of closed contacts, in N or N*m. */
+double rounding_of_contacts(const struct Instance *instance, const double *acceleration);
+
 /*
  * Returns the rounding error of the force of a friction beside its limit. The perturbations above miss that of forces
  * which do not depend on the state.

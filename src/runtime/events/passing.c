@@ -8,7 +8,7 @@
  * Three cases have no next event. If events accumulate at a point (Zeno behaviour), there are EVENT_LIMIT of them within
  * rounding, and one more for each indicator. If zeros cannot be separated, the solver restarts with steps shorter
  * by NEARER, at most NEARER_LIMIT times in a row. If intervals may hide something however short they are, there are
- * UNSURE_LIMIT of them. Time steps then pass the events of contacts with friction (time_steps.h). Else the motion stops.
+ * UNSURE_LIMIT of them. Time steps then pass the events of several contacts (time_steps.c). Else the motion stops.
  * So every communication step ends.
  */
 #include "events/passing.h"
@@ -26,7 +26,6 @@
 #include "nonsmooth/resolve.h"
 #include "nonsmooth/resolution.h"
 #include "detection/search_interval.h"
-#include "events/time_steps.h"
 #include "instance/time_laws.h"
 
 /* Consecutive events within rounding after which the motion stops, beyond one of each indicator. */
@@ -264,8 +263,10 @@ static void report_steps(struct Instance *instance, double time, double longest,
 static bool step_over(struct Instance *instance, const struct CommunicationStep *step, double begin, double until,
                       struct EventProgress *progress) {
   double time = begin, longest = 0.0;
+  if (lagrangian.switches->step_over_events == NULL) return false;
   if (!lagrangian.solver->interpolate(instance, begin, instance->event_state)) return false;
-  if (!step_over_events(instance, until, step->end, &progress->share, &time, &longest)) return false;
+  if (!lagrangian.switches->step_over_events(instance, until, step->end, &progress->share, &time, &longest))
+    return false;
   report_steps(instance, time, longest, progress->indicator);
   progress->close_events = progress->close_events_at_rest = 0;
   return continue_from(instance, step, time, progress);

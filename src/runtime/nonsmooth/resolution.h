@@ -127,10 +127,6 @@ struct SlidingLaws {
   void (*report_others)(const struct Resolution *resolution, const struct RestingContacts *resting);
   /* Ends a slip of contacts without forces; false if there is none (end_slip.h). */
   bool (*end_slip)(struct Resolution *resolution);
-  /* Moves the state on in time, whatever events happen; 0 if that fails (time_step.h). */
-  double (*time_step)(struct Resolution *resolution, double share, double limit, double *longest);
-  /* Opens all contacts (time_step.h). */
-  void (*release)(struct Resolution *resolution);
   /* Logs the contact that jams where the solver stopped; false if none does. */
   bool (*explain)(struct Resolution *resolution);
 };

@@ -263,8 +263,11 @@ static void let_slide(struct Resolution *resolution, size_t contact) {
       set_friction(resolution, i, 1.0);
 }
 
-/* Opens and closes the contacts according to the solution. True if any changes. */
-static bool take_solution(struct Resolution *resolution, const struct RestingContacts *resting) {
+/*
+ * Opens and closes the contacts according to the solution. Where is_least, no other contacts are closed than those that
+ * press: with any other one, the forces of least norm might pull. True if any changes.
+ */
+static bool take_solution(struct Resolution *resolution, const struct RestingContacts *resting, bool is_least) {
   bool changes = false;
   const struct RestingForces *forces = &resting->forces;
   double rounding = rounded_force * largest_free_acceleration(forces);
@@ -272,7 +275,7 @@ static bool take_solution(struct Resolution *resolution, const struct RestingCon
     size_t contact = resting->impulses.member[i];
     bool is_closed = contact_is_closed(resolution, contact);
     bool presses = forces->found_force[i] > rounding, parts = forces->found[i] > rounding;
-    if (is_closed ? !parts : !presses) continue;
+    if (is_closed == (is_closed && !is_least ? !parts : presses)) continue;
     set_contact(resolution, contact, !is_closed);
     if (!is_closed) let_slide(resolution, contact);
     resolution->forced[contact] = is_closed ? FORCED_OPEN : FORCED_CLOSED;
@@ -295,10 +298,10 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   size_t sinking = find_sinking(resolution, &resting);
   bool closes = sinking < resolution->switches->contact_count;
   if (slides && (closes || is_examined)) resting.solutions = resting_forces_solve(&resting.forces, !closes);
-  bool is_crushed = !slides && closes && !resting_forces_press(&resting.forces);
+  bool is_crushed = !slides && closes && !resting_forces_press(&resting.forces, resting.unit);
   bool changes = closes || resting.solutions == OTHER_MOTION;
   if (resting.solutions == NO_MOTION) laws->find_paradox(resolution, &resting, &paradox);
-  else if (changes && !is_crushed) *again = take_solution(resolution, &resting);
+  else if (changes && !is_crushed) *again = take_solution(resolution, &resting, !slides);
   if (resting.solutions == PERHAPS_OTHERS || resting.solutions == OTHER_MOTION)
     laws->report_others(resolution, &resting);
   free_resting(resolution, &resting);

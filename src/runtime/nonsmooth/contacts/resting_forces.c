@@ -9,7 +9,8 @@
  * Compliant contacts may not come to rest. Then contacts are exchanged one by one between those that press and the others
  * (chapter 4 of the book), from several starts.
  *
- * Without sliding friction S is symmetric, and the accelerations are unique. All contacts are then solved at once.
+ * Without sliding friction S is symmetric, and the accelerations are unique. All contacts are then solved at once. If the
+ * forces are not unique, those of least norm are taken.
  */
 #include "nonsmooth/contacts/resting_forces.h"
 
@@ -32,6 +33,9 @@ static const double locking_share = 1e-3;
 
 /* Smaller elements of S are rounding errors and couple no contacts; S is scaled to a size of 1. */
 static const double least_coupling = 1e-13;
+
+/* The compliance of contacts without friction, in units of S for the one with the largest unit. */
+static const double compliance_of_contact = 1e-9;
 
 /* Starts of exchanges before a solution counts as missing, and exchanges for each contact from a start. */
 enum { STARTS = 32, EXCHANGES = 2 };
@@ -148,17 +152,26 @@ static void note_solution(const struct RestingForces *resting) {
   }
 }
 
-/* Finds the forces of a group at free accelerations scaled to a size of 1. False if none are found. */
-static bool find_in_group(const struct RestingForces *resting, double size) {
-  size_t n = resting->group_count;
-  double *matrix = resting->work, *q = matrix + n * n, *z = q + n;
+/*
+ * Finds the forces of all contacts at free accelerations scaled to a size of 1. Each has the same small compliance: of
+ * several solutions, that of least norm is found. False if there is none, or if the compliance alone limits the forces.
+ */
+static bool find_least_forces(const struct RestingForces *resting, const double *unit, double size) {
+  size_t n = resting->count;
+  double *matrix = resting->work, *q = matrix + n * n, *z = q + n, largest = 0.0;
+  for (size_t i = 0; i < n; i++) largest = fmax(largest, unit[i]);
   for (size_t i = 0; i < n; i++) {
-    q[i] = size > 0.0 ? resting->free[resting->group[i]] / size : 0.0;
-    for (size_t j = 0; j < n; j++) matrix[i * n + j] = between(resting, i, j);
+    q[i] = size > 0.0 ? resting->free[i] / size : 0.0;
+    for (size_t j = 0; j < n; j++) matrix[i * n + j] = resting->s[i * n + j];
+    matrix[i * n + i] += compliance_of_contact * unit[i] * unit[i] / (largest * largest);
   }
   if (!pressing_forces_find(resting->path, n, matrix, q, z, z + n)) return false;
-  for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = z[i] * size;
-  return true;
+  bool has_limit = true;
+  for (size_t i = 0; i < n; i++) {
+    resting->force[i] = z[i] * size;
+    has_limit &= z[i] < endless_force;
+  }
+  return has_limit;
 }
 
 /*
@@ -290,10 +303,10 @@ static enum RestingSolutions solve_group(const struct RestingForces *resting, bo
   return is_one ? ONE_MOTION : examine_present(resting, size);
 }
 
-bool resting_forces_press(struct RestingForces *resting) {
+bool resting_forces_press(struct RestingForces *resting, const double *unit) {
   double size = largest_free_acceleration(resting);
   collect_all(resting);
-  if (!find_in_group(resting, size)) return false;
+  if (!find_least_forces(resting, unit, size)) return false;
   is_solution(resting, size); /* fills the accelerations, which uncertain directions may leave below 0 */
   note_solution(resting);
   return true;

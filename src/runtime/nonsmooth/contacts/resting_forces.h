@@ -38,10 +38,10 @@ struct RestingForces resting_forces_in(void *block, const struct ConePath *path,
 double largest_free_acceleration(const struct RestingForces *resting);
 
 /*
- * Finds the forces of contacts without sliding friction, and stores the solution in found and found_force. False if
- * there is none, as where prescribed motions close a gap.
+ * Finds the forces of contacts without sliding friction, and stores the solution in found and found_force. Those times
+ * `unit` have the least norm. False if there is none, as where prescribed motions close a gap.
  */
-bool resting_forces_press(struct RestingForces *resting);
+bool resting_forces_press(struct RestingForces *resting, const double *unit);
 
 /*
  * Finds the forces. is_solved: the present ones are a solution. They are kept if there is no other solution, or if they

@@ -6,7 +6,6 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/sliding/end_slip.h"
-#include "nonsmooth/sliding/time_step.h"
 #include "nonsmooth/tolerances.h"
 
 /* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
@@ -132,6 +131,4 @@ const struct SlidingLaws sliding_laws = {.any_begins = any_begins_to_slide,
                                          .resolve_paradox = resolve_paradox,
                                          .report_others = report_others,
                                          .end_slip = end_slip,
-                                         .time_step = time_step,
-                                         .release = release_contacts,
                                          .explain = explain_jam_of_contact};

@@ -22,7 +22,7 @@
  * Mechanics, 2013). Where nothing slides, u = 0, and the first such problem finds the forces if there are any. For forces
  * it therefore comes first: frictions that can carry the load do, even if they could also slip.
  */
-#include "nonsmooth/cones/cone_interior.h"
+#include "nonsmooth/cones/interior/cone_interior.h"
 
 #include <math.h>
 #include <string.h>

@@ -9,7 +9,7 @@
  * the rate -e u' behind. Of the others the gap may not close: their rates are u' + gap / h. So the step needs no modes, and
  * passes any number of events.
  */
-#include "nonsmooth/sliding/time_step.h"
+#include "time_steps/time_step.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "events/time_steps.h"
+#include "time_steps/time_steps.h"
 
 #include <math.h>
 #include <string.h>
@@ -9,6 +9,7 @@
 #include "instance/time_laws.h"
 #include "nonsmooth/resolution.h"
 #include "nonsmooth/resolve.h"
+#include "time_steps/time_step.h"
 
 /* The first step, relative to the longest one, and the factor of each further one. */
 static const double first_share = 1.0 / 64.0, growth = 2.0;
@@ -48,7 +49,7 @@ static bool is_on_constraints(struct Instance *instance, double time) {
 static bool take_provisional_modes(struct Instance *instance, double time) {
   if (is_on_constraints(instance, time)) return true;
   struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_CHANGE);
-  lagrangian.switches->sliding_laws->release(&resolution);
+  release_contacts(&resolution);
   return is_on_constraints(instance, time);
 }
 
@@ -57,7 +58,7 @@ static double take_time_step(struct Instance *instance, double time, double limi
   *share = fmin(fmax(growth * *share, first_share), 1.0);
   for (; *share >= shortest_share; *share /= shortening) {
     struct Resolution resolution = resolution_at(instance, time, instance->event_state, AT_CHANGE);
-    double length = lagrangian.switches->sliding_laws->time_step(&resolution, *share, limit, longest);
+    double length = time_step(&resolution, *share, limit, longest);
     if (length > 0.0) return length;
   }
   return 0.0;
@@ -67,7 +68,7 @@ bool step_over_events(struct Instance *instance, double until, double end, doubl
                       double *longest) {
   const struct SwitchTable *switches = lagrangian.switches;
   bool has_events = switches->event_count > switches->sample_count;
-  if (switches->sliding_laws == NULL || has_events || instance->stops_at_events) return false;
+  if (has_events || instance->stops_at_events) return false;
   if (switches->time_laws != NULL) end = fmin(end, next_sample(instance, *time));
   for (int i = 0; i < TIME_STEP_LIMIT && *time < end; i++) {
     double length = take_time_step(instance, *time, end - *time, share, longest);
