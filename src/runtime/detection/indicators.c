@@ -35,7 +35,8 @@ double rounding_of_contacts(const struct Instance *instance, const double *accel
   const double *force = acceleration + lagrangian.coordinate_count;
   double size = 0.0;
   for (size_t i = 0; i < switches->contact_count; i++)
-    if (contact_holds(instance, i)) size = fmax(size, fabs(force[switches->contacts[i].constraint]));
+    if (contact_holds(instance, i))
+      size = fmax(size, fabs(force[switches->contacts[i].constraint] + carried_force(instance, i)));
   return rounding_of_force * size;
 }
 

@@ -409,7 +409,7 @@ static const double least_moment = 1e-4;
 static bool change_modes(struct Instance *instance, double begin, double time, bool *changes) {
   double *state = instance->event_state, *rate = state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, begin, state)) return false;
-  if (!solver_derivatives(instance, begin, state, rate)) return false;
+  if (evaluate_prepare(instance) != STATUS_DONE || !solver_derivatives(instance, begin, state, rate)) return false;
   for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += (time - begin) * rate[i];
   return resolve(instance, time, state, AT_CHANGE, 0, changes) == NULL;
 }

@@ -9,9 +9,9 @@
  * Contacts with a friction that sticks are left as they are. Without friction S is symmetric and positive
  * semidefinite, and the accelerations are unique. With it there may be no solution or several (Painleve's paradox).
  *
- * The problem is set up after the frictions have their modes. It is needed if a friction slides on a contact at rest, or
- * if a contact that its force has opened would close again. If an open contact approaches, the solution sets the
- * contacts. If none is found, an impulse may end the slip (sliding_laws.c). Else the motion ends with a message.
+ * The problem is set up after the frictions have their modes, if an open contact approaches. Where nothing slides, this
+ * matters only for one that its force has opened. The solution sets the contacts. If none is found, an impulse may end
+ * the slip (sliding_laws.c). Else the motion ends with a message.
  *
  * If no open contact approaches, the present forces are a solution. At the start their stability is examined
  * (resting_forces.c). It is not while a friction begins to slide, since its direction would differ in another solution.
@@ -63,11 +63,11 @@ static double error_bound_of_acceleration(const struct Resolution *resolution, s
                : resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
 }
 
-/* True if a contact that its force has opened in this event accelerates towards closing. */
-static bool any_comes_back(const struct Resolution *resolution) {
+/* True if an open contact accelerates towards closing; where nothing slides, one that its force has opened. */
+static bool any_sinks(const struct Resolution *resolution, bool slides) {
   bool any = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    any |= resolution->forced[i] == FORCED_OPEN && resolution->part[i] != LEFT_OUT &&
+    any |= (slides || resolution->forced[i] == FORCED_OPEN) && resolution->part[i] != LEFT_OUT &&
            !contact_is_closed(resolution, i) &&
            contact_value(resolution, i, CONTACT_ACCELERATION) < -error_bound_of_acceleration(resolution, i);
   return any;
@@ -291,8 +291,8 @@ const char *contact_forces_resolve(struct Resolution *resolution, bool *again) {
   *again = false;
   const char *problem;
   bool slides = choose_resting(resolution);
-  if (!slides && !any_comes_back(resolution)) return NULL;
   bool is_examined = slides && resolution->occasion == AT_START && !laws->any_begins(resolution);
+  if (!is_examined && !any_sinks(resolution, slides)) return NULL;
   if (!create_resting(resolution, &resting, &problem)) return problem;
   slides &= resting.impulses.friction_count > 0;
   size_t sinking = find_sinking(resolution, &resting);

@@ -25,7 +25,7 @@ static bool sticks_sideways(const struct Resolution *resolution, size_t contact,
   return !slides;
 }
 
-/* Lets open contacts take part that touch at rest. True if there are any beside a closed contact. */
+/* Lets open contacts take part that touch at rest, and do not part. True if there are any beside a closed contact. */
 static bool find_idle(struct Resolution *resolution) {
   const struct Tolerances tolerances = tolerances_of(resolution);
   bool has_closed = false, is_idle = false;
@@ -33,7 +33,8 @@ static bool find_idle(struct Resolution *resolution) {
     bool is_closed = contact_is_closed(resolution, i);
     bool touches = fabs(contact_value(resolution, i, CONTACT_GAP)) <= tolerances.touching;
     bool is_still = fabs(contact_value(resolution, i, CONTACT_RATE)) <= tolerances.rest;
-    bool rests = !is_closed && touches && is_still && sticks_sideways(resolution, i, tolerances.rest);
+    bool parts = contact_value(resolution, i, CONTACT_ACCELERATION) > rounded_acceleration_of_gap(resolution, i);
+    bool rests = !is_closed && touches && is_still && !parts && sticks_sideways(resolution, i, tolerances.rest);
     resolution->part[i] = rests ? TAKES_PART : LEFT_OUT;
     has_closed |= is_closed;
     is_idle |= rests;

@@ -72,6 +72,11 @@ static bool is_off_zero(const struct Resolution *resolution, double velocity) {
   return fabs(velocity) > tolerances_of(resolution).kink;
 }
 
+/* True if a velocity at 0 has a rate, beyond its rounding error and that of rates which constraints hold at 0. */
+static bool leaves_rest(const struct Resolution *resolution, double rate, double error_bound) {
+  return fabs(rate) > fmax(error_bound, tolerances_of(resolution).acceleration);
+}
+
 static struct FrictionState friction_state(const struct Resolution *resolution, size_t friction) {
   const struct FrictionMetadata *metadata = &resolution->switches->frictions[friction];
   size_t slot = friction_slot(resolution->switches, friction, FRICTION_VELOCITY);
@@ -198,14 +203,14 @@ static double mode_from_sliding(const struct Resolution *resolution, const struc
 }
 
 /* Returns the mode of a friction that acts with a share of its force: it sticks once its velocity is not constrained. */
-static double mode_with_share(const struct FrictionState *state) {
+static double mode_with_share(const struct Resolution *resolution, const struct FrictionState *state) {
   if (state->is_moving) return state->velocity > 0.0 ? 1.0 : -1.0;
-  return fabs(state->rate) > state->error_bound_of_rate ? 0.0 : state->mode;
+  return leaves_rest(resolution, state->rate, state->error_bound_of_rate) ? 0.0 : state->mode;
 }
 
 /* Returns the mode that agrees with Coulomb's law; the present one if nothing contradicts it. */
 static double friction_mode(const struct Resolution *resolution, const struct FrictionState *state) {
-  if (state->has_share) return mode_with_share(state);
+  if (state->has_share) return mode_with_share(resolution, state);
   if (state->has_no_force) return mode_without_force(state);
   if (state->is_moving && state->may_jump) return state->velocity > 0.0 ? 1.0 : -1.0;
   return state->mode == 0.0 ? mode_from_rest(resolution, state) : mode_from_sliding(resolution, state);
@@ -351,13 +356,6 @@ bool frictions_find_constrained(struct Resolution *resolution, size_t friction, 
   return is_restored && with != SIZE_MAX && without != SIZE_MAX;
 }
 
-/* True if the velocity of a sliding friction only passes through 0. */
-static bool leaves_rest(const struct Resolution *resolution, size_t friction) {
-  size_t rate = friction_slot(resolution->switches, friction, FRICTION_RATE);
-  double least = fmax(resolution->error_bound[rate], sticking_rate_share * resolution->largest[rate]);
-  return fabs(resolution->value[rate]) > least;
-}
-
 /*
  * Reports frictions as sticking that slide without moving: other constraints hold their velocity, and forces are not
  * unique.
@@ -376,7 +374,9 @@ bool frictions_report(struct Resolution *resolution, bool *again) {
     bool is_constrained = false,
          may_rest = mode != 0.0 && !metadata->is_given && fabs(velocity) <= slowest && lagrangian.constraints.count > 1;
     bool is_at_limit = metadata->has_static_limit && mode_of(resolution, metadata->reported) == 0.0;
-    if (!is_planar && !is_at_limit) may_rest &= !leaves_rest(resolution, i);
+    size_t rate = friction_slot(switches, i, FRICTION_RATE);
+    double least = fmax(resolution->error_bound[rate], sticking_rate_share * resolution->largest[rate]);
+    if (!is_planar && !is_at_limit) may_rest &= !leaves_rest(resolution, resolution->value[rate], least);
     if (may_rest && !frictions_find_constrained(resolution, i, &is_constrained)) return false;
     if (is_planar) i++; /* the friction across has the same mode */
     if (is_constrained) mode = 0.0;
