@@ -93,6 +93,10 @@ def pushed(count, drive):
     return text
 
 
+# A block of 2 kg on a ground that holds 5 N; a clamp that holds F begins to move along it.
+PULLED = """<coordinate name="h" velocity="vh" acceleration="0.3*time^{}"/><coordinate name="x" velocity="vx"/><coordinate name="z" velocity="vz"/>
+  <particle mass="2" x="x" z="z"/><gravity z="-10"/><contact name="ground" gap="z"/><parameter name="F" start="1"/>
+  <friction name="clamp" velocity="vx - vh" force="F"/><friction name="rest" velocity="vx" force="0.25*ground.force"/>"""
 SYSTEMS = {
     "Lifted": ON_GROUND.format(f'<coordinate name="h" velocity="vh" {DWELL}/>'),
     "Smooth": ON_GROUND.format('<coordinate name="h" velocity="vh" acceleration="lift*sin(4*time)"/>'),
@@ -122,6 +126,9 @@ SYSTEMS = {
     "YokeAndBearing": YOKE,
     "YokeBySine": YOKE.replace("cos(p)", "sin(p)").replace('start="0.3"/><kin', 'start="0"/><kin'),
     "LeavingLadder": LADDER,
+    **{f"PulledAlong{n}": PULLED.format(n) for n in (1, 2, 3)},
+    "LiftedByPalm": """<coordinate name="h" velocity="vh" acceleration="2"/><coordinate name="z" velocity="vz"/><particle mass="1" z="z"/><gravity z="-10"/>
+      <contact name="table" gap="z"/><contact name="palm" gap="z - h"/>""",
     "WormAtStop": WORM.format("phi", 0.05),
     "WormAtItsOwnStop": WORM.format("a", 1.5),
 }
@@ -261,6 +268,27 @@ def test_a_clamp_lifts_a_block_smoothly():
     height, velocity = 3 * slip**5, 15 * slip**4
     expected = height + velocity * (1 - slip) + 3 * (1 - slip) ** 2
     assert at_end("Clamped", "z", "CoSimulation") == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("power", [1, 2, 3])
+@pytest.mark.parametrize("F", [1.0, 4.0, 4.9, 5.2, 5.5, 20.0])
+def test_a_clamp_pulls_along_a_ground(power, F, tolerance):
+    """The block stays, or sticks to the clamp up to 0.3 t^n = (F - 5)/2; from then on it has this acceleration."""
+    force = (F - 5) / 2
+    slip = min((force / 0.3) ** (1 / power), 2.0) if F > 5 else 0.0
+    velocity, x = 0.3 * slip ** (power + 1) / (power + 1), 0.3 * slip ** (power + 2) / ((power + 1) * (power + 2))
+    expected = x + velocity * (2 - slip) + max(force, 0.0) * (2 - slip) ** 2 / 2
+    rows = fmpy.simulate_fmu(str(fmu.archive(f"PulledAlong{power}")), fmi_type="CoSimulation", stop_time=2.0, output_interval=0.02, relative_tolerance=tolerance,
+                             start_values={"F": F}, output=["x", "vh"])  # fmt: skip
+    assert rows["x"][-1] == pytest.approx(expected, abs=10 * tolerance)
+    assert rows["vh"][-1] == pytest.approx(0.3 * 2 ** (power + 1) / (power + 1), rel=10 * tolerance)
+
+
+@KINDS
+def test_a_palm_lifts_a_block_from_a_table(kind):
+    """At the start both touch it. The table has no force, since the palm leads the block away."""
+    assert at_end("LiftedByPalm", "z", kind) == pytest.approx(1.0, abs=1e-8 if kind == "CoSimulation" else 1e-4)
 
 
 @KINDS

@@ -405,22 +405,21 @@ enum { LOOK_LIMIT = 20 };
 /* In communication steps: the shortest moment after which constraints may contradict each other clearly. */
 static const double least_moment = 1e-4;
 
-/* Sets *changes if the modes change for a later time, to which the state is extrapolated. False if there are none. */
-static bool change_modes(struct Instance *instance, double begin, double time, bool *changes) {
+/* True if the modes change for a later time, to which the state is extrapolated. If none are found there, they stay. */
+static bool change_modes(struct Instance *instance, double begin, double time) {
+  bool changes;
   double *state = instance->event_state, *rate = state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, begin, state)) return false;
   if (evaluate_prepare(instance) != STATUS_DONE || !solver_derivatives(instance, begin, state, rate)) return false;
   for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += (time - begin) * rate[i];
-  return resolve(instance, time, state, AT_CHANGE, 0, changes) == NULL;
+  return resolve_or_restore(instance, time, state, &changes) && changes;
 }
 
 /* Takes the modes of a moment after a time, and the state there. False if none change. */
 static bool pass_moment(struct Instance *instance, const struct CommunicationStep *step, double begin,
                         struct EventProgress *progress) {
   double time = begin + least_moment * (step->end - step->start);
-  bool changes = false;
-  if (!(time < step->end) || !change_modes(instance, begin, time, &changes) || !changes) return false;
-  return continue_from(instance, step, time, progress);
+  return time < step->end && change_modes(instance, begin, time) && continue_from(instance, step, time, progress);
 }
 
 /* Takes the modes of longer moments after a time, from that time on. False if none change, or after many times there. */
@@ -428,9 +427,9 @@ static bool take_later_modes(struct Instance *instance, const struct Communicati
                              struct EventProgress *progress) {
   bool changes = false;
   progress->looks = begin > progress->looked_ahead ? 0 : progress->looks + 1;
-  if (progress->looks == LOOK_LIMIT) return false;
+  if (!(begin < step->end) || progress->looks == LOOK_LIMIT) return false;
   for (double moment = 10.0 * least_moment; moment <= 1.0 && !changes; moment *= 10.0)
-    if (!change_modes(instance, begin, begin + moment * (step->end - step->start), &changes)) return false;
+    changes = change_modes(instance, begin, begin + moment * (step->end - step->start));
   if (!changes || !take_event_state(instance, begin)) return false;
   if (!continue_from(instance, step, begin, progress)) return false;
   progress->looked_ahead = begin;

@@ -297,3 +297,22 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
   *changed = resolution.changed;
   return problem;
 }
+
+bool resolve_or_restore(struct Instance *instance, double time, double *state, bool *changed) {
+  size_t modes = lagrangian.switches->mode_count * sizeof(double);
+  double *mode = modes_of(instance), *before = scratch_take(instance, SCRATCH_MODES, modes);
+  struct DeferredLog deferred;
+  if (before == NULL) return solver_is_out_of_memory(instance);
+  memcpy(before, mode, modes);
+  log_defer(instance, &deferred);
+  bool agrees = resolve(instance, time, state, AT_CHANGE, 0, changed) == NULL;
+  log_release(instance, &deferred);
+  if (agrees) log_write_deferred(instance, &deferred);
+  else {
+    memcpy(mode, before, modes);
+    instance->parameter_constants_are_stale = true;
+    *changed = false;
+  }
+  scratch_return(instance, SCRATCH_MODES);
+  return agrees;
+}

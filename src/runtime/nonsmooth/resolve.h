@@ -11,5 +11,11 @@
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                     bool *changed);
 
+/*
+ * Does the same for an expression or a state that has changed at this time. False if the motion cannot continue there;
+ * then the modes stay, and nothing is logged.
+ */
+bool resolve_or_restore(struct Instance *instance, double time, double *state, bool *changed);
+
 /* Logs which contact friction jams at a state where the motion ends; false if it jams none. */
 bool resolve_explain(struct Instance *instance, double time, double *state);

@@ -22,21 +22,12 @@ enum { TIME_STEP_LIMIT = 10000 };
 
 /* True if the modes of a copy of the state agree with it. The copy, with its jumps, is then taken; else the modes stay. */
 static bool modes_agree(struct Instance *instance, double time, double *state) {
-  size_t size = lagrangian.state_count * sizeof *state, modes = lagrangian.switches->mode_count * sizeof(double);
-  double *copy = state + lagrangian.state_count, *mode = modes_of(instance);
-  double *before = scratch_take(instance, SCRATCH_MODES, modes);
-  struct DeferredLog deferred;
+  size_t size = lagrangian.state_count * sizeof *state;
+  double *copy = state + lagrangian.state_count;
   bool changed;
-  if (before == NULL) return solver_is_out_of_memory(instance);
   memcpy(copy, state, size);
-  memcpy(before, mode, modes);
-  log_defer(instance, &deferred);
-  bool agree = resolve(instance, time, copy, AT_CHANGE, 0, &changed) == NULL;
-  log_release(instance, &deferred);
+  bool agree = resolve_or_restore(instance, time, copy, &changed);
   if (agree) memcpy(state, copy, size);
-  else memcpy(mode, before, modes);
-  if (!agree) instance->parameter_constants_are_stale = true;
-  scratch_return(instance, SCRATCH_MODES);
   return agree;
 }
 

@@ -63,13 +63,20 @@ static double error_bound_of_acceleration(const struct Resolution *resolution, s
                : resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
 }
 
-/* True if an open contact accelerates towards closing; where nothing slides, one that its force has opened. */
+/* True if a contact closes. A closed one does so where its constraint contradicts others, as under a hand that lifts. */
+static bool sinks(const struct Resolution *resolution, size_t contact) {
+  bool is_closed = contact_is_closed(resolution, contact);
+  double bound =
+      is_closed ? rounded_acceleration_of_gap(resolution, contact) : error_bound_of_acceleration(resolution, contact);
+  return contact_value(resolution, contact, CONTACT_ACCELERATION) < -bound;
+}
+
+/* True if a contact that takes part sinks. Where nothing slides, open ones count only if their force has opened them. */
 static bool any_sinks(const struct Resolution *resolution, bool slides) {
   bool any = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
-    any |= (slides || resolution->forced[i] == FORCED_OPEN) && resolution->part[i] != LEFT_OUT &&
-           !contact_is_closed(resolution, i) &&
-           contact_value(resolution, i, CONTACT_ACCELERATION) < -error_bound_of_acceleration(resolution, i);
+    any |= (slides || contact_is_closed(resolution, i) || resolution->forced[i] == FORCED_OPEN) &&
+           resolution->part[i] != LEFT_OUT && sinks(resolution, i);
   return any;
 }
 
@@ -237,7 +244,7 @@ bool create_resting(struct Resolution *resolution, struct RestingContacts *resti
 }
 
 /*
- * Returns the open contact at rest with the largest closing acceleration beyond rounding, such as one opened too early;
+ * Returns the contact at rest with the largest closing acceleration beyond rounding, such as one opened too early;
  * contact_count if there is none.
  */
 static size_t find_sinking(const struct Resolution *resolution, const struct RestingContacts *resting) {
@@ -248,8 +255,7 @@ static size_t find_sinking(const struct Resolution *resolution, const struct Res
     double acceleration = contact_value(resolution, contact, CONTACT_ACCELERATION);
     double share = resolution->forced[contact] == FORCED_OPEN ? uncertain_acceleration : rounded_acceleration;
     double unit = resting->unit[i], rounding = share * fmax(free / unit, force / (unit * unit));
-    double least = error_bound_of_acceleration(resolution, contact) + rounding;
-    if (contact_is_closed(resolution, contact) || !(acceleration < -least) || acceleration >= most) continue;
+    if (!sinks(resolution, contact) || !(acceleration < -rounding) || acceleration >= most) continue;
     most = acceleration;
     found = contact;
   }

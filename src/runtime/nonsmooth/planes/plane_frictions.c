@@ -122,11 +122,15 @@ static bool any_is_overcome(const struct Resolution *resolution) {
   return any;
 }
 
-/* True if a friction along a line acts with its limit at rest: with other forces of contacts it may have a reserve. */
+/*
+ * True if a friction along a line acts with its limit at rest, and is reported as sticking since others hold its velocity.
+ * With other forces of contacts it may have a reserve.
+ */
 static bool any_rests_at_limit(const struct Resolution *resolution) {
   bool any = false;
   for (size_t i = 0; i < resolution->switches->friction_count && resolution->switches->rests_on != NULL; i++)
-    any |= friction_rests_at_limit(resolution, i);
+    any |= mode_of(resolution, resolution->switches->frictions[i].reported) == 0.0 &&
+           friction_rests_at_limit(resolution, i);
   return any;
 }
 
