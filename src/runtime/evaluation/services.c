@@ -111,7 +111,8 @@ void solver_free_memory(struct Instance *instance) {
   instance->solver_memory = NULL;
 }
 
-bool solver_is_out_of_memory(const struct Instance *instance) {
+bool solver_is_out_of_memory(struct Instance *instance) {
+  instance->is_out_of_memory = true;
   log_message(instance, STATUS_ERROR, "out of memory for the solver");
   return false;
 }

@@ -35,7 +35,7 @@ const char *solver_project(struct Instance *instance, double time, double *state
 void solver_free_memory(struct Instance *instance);
 
 /* Logs that memory for the solver is missing; returns false. */
-bool solver_is_out_of_memory(const struct Instance *instance);
+bool solver_is_out_of_memory(struct Instance *instance);
 
 /* True if a step is only a few units in the last place of the time. */
 bool solver_step_vanishes(double time, double step);

@@ -437,7 +437,7 @@ static bool take_later_modes(struct Instance *instance, const struct Communicati
 }
 
 /*
- * Passes a time where constraints of frictions begin to contradict others. An example is a part that they hold at rest,
+ * Passes a time where constraints of modes begin to contradict others. An example is a part that frictions hold at rest,
  * and that begins to be driven without a jump of its acceleration. True if modes change; the solver then starts anew.
  */
 static bool pass_contradiction(struct Instance *instance, const struct CommunicationStep *step, double begin,
@@ -449,7 +449,7 @@ static bool pass_contradiction(struct Instance *instance, const struct Communica
 static bool pass_contradictions(struct Instance *instance, const struct CommunicationStep *step,
                                 struct EventProgress *progress) {
   const struct Span last = instance->fmu_state->last_step;
-  if (lagrangian.switches->friction_laws == NULL || instance->violated_constraint == 0) return false;
+  if (instance->violated_constraint == 0) return false;
   return pass_contradiction(instance, step, last.start, progress) ||
          pass_contradiction(instance, step, last.end, progress);
 }

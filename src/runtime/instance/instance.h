@@ -114,6 +114,7 @@ struct Instance {
   bool reported_straight_input;   /* logged since the reset: an input would leave its limits within a step */
   uint64_t reported_singularity;  /* checksum of the snapshot at which missing accelerations were logged */
   int singular;                   /* 1 + the coordinate of a singular mass matrix, at the last evaluation; 0 for none */
+  bool is_out_of_memory;          /* an allocation of the present step has failed */
   size_t violated_constraint;     /* 1 + the constraint that the last projection could not fulfil; 0 for none */
   const char *limited_by;         /* function that limited the solver's last step; NULL for none */
   double *work;                   /* of evaluations: 3 state_count + 2 input_count + parameter_count */

@@ -359,9 +359,12 @@ enum Status communication_step(struct Instance *instance, double time, double si
   if (fmu_state->phase == PHASE_ERROR) return STATUS_ERROR;
   prescribed_inputs_begin_step(instance);
   instance->violated_constraint = 0;
+  instance->is_out_of_memory = false;
   double reached = time;
   enum StepResult result = limit_inputs(instance, step.length) ? run(instance, &step, &reached) : STEP_PARTIAL;
-  if (result == STEP_FAILED) return reject_call(instance, "the step from time %g failed", time);
+  /* Time steps, or a later moment, may have passed an event whose resolution had no memory. */
+  if (result == STEP_FAILED || instance->is_out_of_memory)
+    return reject_call(instance, "the step from time %g failed", time);
   evaluate_advance_inputs(instance, reached);
   fmu_state->input_derivatives_set = 0;
   fmu_state->time = reached;
