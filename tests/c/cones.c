@@ -20,7 +20,7 @@ void scratch_return(struct Instance *instance, enum ScratchUse use) {
   free(instance->scratch[0].block);
 }
 
-bool solver_is_out_of_memory(const struct Instance *instance) {
+bool solver_is_out_of_memory(struct Instance *instance) {
   (void)instance;
   return false;
 }
