@@ -126,10 +126,11 @@ static void measure_error_bound(struct Search *search, double time) {
   sample(search, time, search->values);
   indicator_rounding_bounds(search->instance, time, search->state, search->instance->acceleration, search->error_bound);
   const double *acceleration = search->instance->acceleration;
+  double of_contacts = rounding_of_contacts(search->instance, acceleration);
   for (size_t i = 0; i < count; i++)
     if (indicator_is_force(search->instance, i))
-      search->error_bound[i] = i < frictions ? rounding_of_contacts(search->instance, acceleration)
-                                             : rounding_at_limit(search->instance, acceleration, i - frictions);
+      search->error_bound[i] =
+          i < frictions ? of_contacts : rounding_at_limit(search->instance, acceleration, i - frictions);
   memcpy(exact, search->values, count * sizeof *exact);
   for (int way = 0; way < 2; way++) {
     bool known =

@@ -9,11 +9,11 @@
  * Contacts with a friction that sticks are left as they are. Without friction S is symmetric and positive
  * semidefinite, and the accelerations are unique. With it there may be no solution or several (Painleve's paradox).
  *
- * The problem is set up after the frictions have their modes, if an open contact approaches. Where nothing slides, this
- * matters only for one that its force has opened. The solution sets the contacts. If none is found, an impulse may end
- * the slip (sliding_laws.c). Else the motion ends with a message.
+ * The problem is set up after the frictions have their modes, if a contact approaches. A closed one does so where its
+ * constraint contradicts others. Where nothing slides, open ones count only if their force has opened them. The solution
+ * sets the contacts. If none is found, an impulse may end the slip (sliding_laws.c). Else the motion ends with a message.
  *
- * If no open contact approaches, the present forces are a solution. At the start their stability is examined
+ * If no contact approaches, the present forces are a solution. At the start their stability is examined
  * (resting_forces.c). It is not while a friction begins to slide, since its direction would differ in another solution.
  */
 #include "nonsmooth/contacts/contact_forces.h"
