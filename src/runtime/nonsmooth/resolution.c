@@ -19,7 +19,7 @@ static size_t rows_of_matrix(void) {
   return lagrangian.coordinate_count + lagrangian.constraints.count;
 }
 
-/* The workspace of search.c comes first. The arrays before `value`, and `forced`, are initially 0. */
+/* The workspace of search.c comes first. The arrays before `value`, `forced` and `has_shared` are initially 0. */
 static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   const struct SwitchTable *switches = lagrangian.switches;
   size_t values = resolution_value_count(switches), indicators = indicator_count(switches);
@@ -34,7 +34,6 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   ARENA_NUMBERS(&arena, switches->friction_count, &resolution->force_error_bound, &resolution->began,
                 &resolution->first_rate);
   ARENA_NUMBERS(&arena, switches->event_count, &resolution->condition, &resolution->happened);
-  ARENA_NUMBERS(&arena, modes, &resolution->first_mode);
   ARENA_NUMBERS(&arena, switches->resting_count, &resolution->moves);
   if (switches->resting_count > 0) {
     ARENA_NUMBERS(&arena, lagrangian.input_count, &resolution->probe_input);
@@ -44,11 +43,12 @@ static size_t lay_out_resolution(struct Resolution *resolution, double *work) {
   ARENA_NUMBERS(&arena, switches->ball_count, &resolution->ball_distance);
   ARENA_NUMBERS(&arena, switches->energy_count, &resolution->energy);
   ARENA_NUMBERS(&arena, rows_of_matrix(), &resolution->acceleration);
-  ARENA_NUMBERS(&arena, switches->mode_count, &resolution->kept_modes);
+  ARENA_NUMBERS(&arena, switches->mode_count, &resolution->kept_modes, &resolution->first_modes);
   ARENA_NUMBERS(&arena, lagrangian.state_count, &resolution->rounded, &resolution->derivative);
   ARENA_NUMBERS(&arena, indicators, &resolution->rounding);
   ARENA_NUMBERS(&arena, rows_of_matrix() + 2 * lagrangian.constraints.count, &resolution->correction);
   ARENA_TAKE(&arena, resolution->forced, switches->contact_count);
+  ARENA_TAKE(&arena, resolution->has_shared, switches->contact_count);
   ARENA_TAKE(&arena, resolution->part, modes);
   ARENA_NUMBERS(&arena, modes, &resolution->guess);
   return (arena.next - (uintptr_t)work + sizeof(double) - 1) / sizeof(double);
@@ -65,6 +65,7 @@ struct Resolution resolution_of(struct Instance *instance) {
   lay_out_resolution(&resolution, instance->switching_work);
   memset(resolution.largest, 0, (size_t)(resolution.value - resolution.largest) * sizeof(double));
   memset(resolution.forced, 0, switches->contact_count * sizeof *resolution.forced);
+  memset(resolution.has_shared, 0, switches->contact_count * sizeof *resolution.has_shared);
   return resolution;
 }
 
@@ -207,6 +208,13 @@ void resolution_set_mode(struct Resolution *resolution, size_t mode, double valu
   resolution->changed = true;
 }
 
+bool resolution_has_changed(const struct Resolution *resolution) {
+  const double *mode = modes_of(resolution->instance), *first = resolution->first_modes;
+  bool changes = resolution->jumped || resolution->is_projected;
+  for (size_t i = 0; i < resolution->switches->mode_count; i++) changes |= mode[i] != first[i];
+  return resolution->changed && changes;
+}
+
 void set_friction(struct Resolution *resolution, size_t friction, double mode) {
   const struct SwitchTable *switches = resolution->switches;
   size_t plane = plane_of(switches, friction);
@@ -239,7 +247,7 @@ bool resolution_project_velocities(struct Resolution *resolution) {
   double *velocity = resolution->state + lagrangian.coordinate_count;
   if (!resolution_find_correction(resolution)) return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) velocity[i] += resolution->correction[i];
-  resolution->changed = true;
+  resolution->changed = resolution->is_projected = true;
   return true;
 }
 
@@ -259,6 +267,6 @@ bool resolution_project_coordinates(struct Resolution *resolution) {
                                     : lagrangian.constraints.correct_positions)(&point, &seed, resolution->correction);
   if (instance->singular != 0 || !are_finite(resolution->correction, lagrangian.coordinate_count)) return false;
   for (size_t i = 0; i < lagrangian.coordinate_count; i++) resolution->state[i] += resolution->correction[i];
-  resolution->changed = true;
+  resolution->changed = resolution->is_projected = true;
   return true;
 }

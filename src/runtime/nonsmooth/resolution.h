@@ -3,8 +3,11 @@
 
 #include "instance/event_laws.h"
 
-/* FORCED_OPEN: the contact pulled, or an event opened it. FORCED_CLOSED: by the solution for all forces at rest. */
-enum Forced { UNFORCED, FORCED_OPEN, FORCED_CLOSED };
+/*
+ * FORCED_OPEN: the contact pulled, or an event opened it. FORCED_CLOSED: by the solution for all forces at rest.
+ * SHARES_LOAD: it touched at rest, and was closed to share the load.
+ */
+enum Forced { UNFORCED, FORCED_OPEN, FORCED_CLOSED, SHARES_LOAD };
 
 /*
  * The part of a contact or friction in the problem that is being solved, struct ContactImpulses or struct RestForces. In
@@ -36,8 +39,9 @@ struct Resolution {
   enum Forced *forced;         /* of each contact: what its force, or an event, did last */
   double *rate;                /* of each branch before its last switch; 0 if it has not switched */
   double *absent;              /* of each branch: its mode whose piece has no value here; 0 for none */
-  double *first_mode;          /* of each contact, then each friction: at the start of the event */
+  double *first_modes;         /* at the start of the event */
   double *struck;              /* contacts: 1 if an impulse acted in the event, else 0 */
+  bool *has_shared;            /* of each contact: it was closed in the event to share the load */
   enum Part *part;             /* of each contact, then each friction */
   double *guess;     /* of contacts, then frictions: force in a short step; mode, if no friction is in a plane */
   double *start_gap; /* of each contact: the most negative one that rounded start values gave; else 0 */
@@ -52,6 +56,7 @@ struct Resolution {
   const struct BranchMetadata *energetic; /* the first with holds_energy; NULL for none */
   double *energy;                         /* energies and momenta before it switched */
   bool changed, jumped;                   /* jumped: velocities or coordinates jumped */
+  bool is_projected;                      /* the state was projected onto constraints */
   bool moved, thrown, set_mode;           /* events have set coordinates; coordinates or velocities; a mode */
   bool lags;                              /* frictions have switched, and velocities were not projected since */
   bool came_to_rest;                      /* contacts came to rest in their last round */
@@ -61,7 +66,6 @@ struct Resolution {
   bool is_departure;                      /* the indicator, of a branch, was at rest at 0 until the event */
   bool is_beside_departure;               /* another one has left 0 at this time, in the event before */
   bool has_started;                       /* contacts and frictions have their modes of the start, for AT_START */
-  bool has_shared;                        /* contacts at rest share the load */
   bool has_several_motions;               /* several motions of the frictions were logged */
   bool has_stuck_again;                   /* frictions at their limits at rest have stuck again */
   bool has_searched_jam;                  /* all modes of frictions at rest were tried */
@@ -92,8 +96,8 @@ struct ContactLaws {
    * or the reason why there is none.
    */
   const char *(*resolve_forces)(struct Resolution *resolution, bool *again);
-  /* After those: closes contacts that touch at rest, to share the load; sets *again if any. Returns as above. */
-  const char *(*share_load)(struct Resolution *resolution, bool *again);
+  /* After those: closes contacts that touch at rest, to share the load. False if there are none. */
+  bool (*share_load)(struct Resolution *resolution);
   /* Moves start values that penetrate contacts by rounding; false if velocities cannot follow. */
   bool (*lift_start)(struct Resolution *resolution);
   /* Opens contacts that were moved apart, before the projection; false after logging one that penetrates. */
@@ -241,6 +245,11 @@ static inline double mode_of(const struct Resolution *resolution, size_t mode) {
   return resolution->instance->parameter[mode];
 }
 
+/* The same for the mode that it had at the start of the event. */
+static inline double first_mode_of(const struct Resolution *resolution, size_t mode) {
+  return resolution->first_modes[mode - (lagrangian.parameter_count - resolution->switches->mode_count)];
+}
+
 /* Returns the element of part[] of a friction. */
 static inline enum Part *part_of_friction(const struct Resolution *resolution, size_t friction) {
   return &resolution->part[resolution->switches->contact_count + friction];
@@ -248,6 +257,9 @@ static inline enum Part *part_of_friction(const struct Resolution *resolution, s
 
 /* Sets a mode, and notes that something changed. */
 void resolution_set_mode(struct Resolution *resolution, size_t mode, double value);
+
+/* True if the state or a mode is no longer that before the event. */
+bool resolution_has_changed(const struct Resolution *resolution);
 
 /* Sets the mode of a friction: 0 for sticking, else the sign of its velocity, which frictions in planes ignore. */
 void set_friction(struct Resolution *resolution, size_t friction, double mode);

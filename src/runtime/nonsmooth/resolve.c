@@ -70,7 +70,8 @@ static const char *resolve_contact_forces(struct Resolution *resolution, bool *a
 
 static const char *let_touching_share(struct Resolution *resolution, bool *again) {
   const struct ContactLaws *laws = resolution->switches->contact_laws;
-  return laws != NULL ? laws->share_load(resolution, again) : NULL;
+  *again = laws != NULL && laws->share_load(resolution);
+  return NULL;
 }
 
 static const char *report_friction_modes(struct Resolution *resolution, bool *again) {
@@ -221,28 +222,24 @@ static void report_missing_for_frictions(const struct Resolution *resolution) {
     switches->friction_laws->report_missing(resolution, "accelerations");
 }
 
-/* Returns the mode of a contact or, after those, of a friction; one in a plane only slides, 1, or sticks, 0. */
-static double switching_mode(const struct Resolution *resolution, size_t i) {
-  const struct SwitchTable *switches = resolution->switches;
-  size_t friction = i - switches->contact_count;
-  if (i < switches->contact_count) return mode_of(resolution, switches->contacts[i].mode);
-  double mode = mode_of(resolution, switches->frictions[friction].mode);
-  return is_in_plane(switches, friction) && mode != 0.0 ? 1.0 : mode;
-}
-
-static size_t switching_count(const struct SwitchTable *switches) {
-  return switches->contact_count + switches->friction_count;
+static void log_switch(const struct Resolution *resolution, const char *name) {
+  log_message(resolution->instance, STATUS_DONE, "time %.17g: '%s' switches", resolution->time, name);
 }
 
 /* Logs the name of each contact that switched or was struck, and of each friction that switched. */
 static void log_switches(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  size_t contacts = switches->contact_count;
-  for (size_t i = 0; i < switching_count(switches); i++) {
-    bool is_struck = i < contacts && resolution->struck[i] != 0.0;
-    const char *name = i < contacts ? switches->contacts[i].name : switches->frictions[i - contacts].name;
-    if (switching_mode(resolution, i) != resolution->first_mode[i] || is_struck)
-      log_message(resolution->instance, STATUS_DONE, "time %.17g: '%s' switches", resolution->time, name);
+  for (size_t i = 0; i < switches->contact_count; i++) {
+    size_t mode = switches->contacts[i].mode;
+    bool switches_mode = mode_of(resolution, mode) != first_mode_of(resolution, mode);
+    if (switches_mode || resolution->struck[i] != 0.0) log_switch(resolution, switches->contacts[i].name);
+  }
+  for (size_t i = 0; i < switches->friction_count; i++) {
+    double mode = mode_of(resolution, switches->frictions[i].mode);
+    double first = first_mode_of(resolution, switches->frictions[i].mode);
+    bool sticks_or_slides = (mode == 0.0) != (first == 0.0);
+    bool reverses = mode != first && !is_in_plane(switches, i);
+    if (sticks_or_slides || reverses) log_switch(resolution, switches->frictions[i].name);
   }
 }
 
@@ -275,10 +272,10 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
     count_kink(instance, changed);
     return NULL;
   }
-  for (size_t i = 0; i < switching_count(resolution.switches); i++)
-    resolution.first_mode[i] = switching_mode(&resolution, i);
+  memcpy(resolution.first_modes, modes_of(instance), resolution.switches->mode_count * sizeof(double));
   const char *problem = begin_resolution(&resolution);
   if (problem == NULL) problem = resolve_in_rounds(&resolution);
+  resolution.changed = resolution_has_changed(&resolution);
   bool is_missing = problem == no_accelerations || problem == no_first_accelerations;
   bool is_explained = is_missing && explain_jam(&resolution);
   if (problem == no_accelerations && !is_explained) report_missing_for_frictions(&resolution);

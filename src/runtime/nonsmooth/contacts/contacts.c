@@ -344,23 +344,31 @@ static bool is_torn_apart(const struct Resolution *resolution, size_t contact) {
 }
 
 /*
- * Returns the closed contact that pulls most; else one that is torn apart, or whose force has just reached 0, once an
- * event; contact_count for none.
+ * True if the force of a closed contact has just reached 0, once an event. An importer stops at a zero or beyond it, and
+ * does not say of which indicator.
+ */
+static bool has_reached_zero(const struct Resolution *resolution, size_t contact, double force) {
+  bool is_reached = is_hit(resolution, contact_indicator(resolution->switches, contact)) ||
+                    (resolution->occasion == IN_EXCHANGE && force <= 0.0);
+  bool was_closed = first_mode_of(resolution, resolution->switches->contacts[contact].mode) > 0.0;
+  return is_reached && was_closed && !resolution->jumped;
+}
+
+/*
+ * Returns the closed contact that pulls most; else one that is torn apart, has no share of the load, or whose force has
+ * vanished. contact_count for none.
  */
 static size_t find_pulling(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
   size_t found = switches->contact_count;
   double most = 0.0, vanishing = vanishing_force(resolution);
+  double no_share = rounded_force * largest_contact_force(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
     if (!contact_is_closed(resolution, i)) continue;
     double force = contact_force(resolution, i);
-    /* An importer stops at a zero or beyond it, and does not say of which indicator. */
-    bool is_reached = is_hit(resolution, contact_indicator(resolution->switches, i)) ||
-                      (resolution->occasion == IN_EXCHANGE && force <= 0.0);
-    bool was_closed = resolution->first_mode[i] == mode_of(resolution, switches->contacts[i].mode);
-    bool parts =
-        ((is_reached && was_closed && !resolution->jumped) || force < vanishing) && resolution->forced[i] == UNFORCED;
-    if (!(force < 0.0) && !parts && !is_torn_apart(resolution, i)) continue;
+    bool vanishes = resolution->forced[i] == UNFORCED && (has_reached_zero(resolution, i, force) || force < vanishing);
+    bool is_useless = resolution->forced[i] == SHARES_LOAD && !(force > no_share);
+    if (!(force < 0.0) && !vanishes && !is_useless && !is_torn_apart(resolution, i)) continue;
     if (found < switches->contact_count && fmin(force, 0.0) >= most) continue;
     most = fmin(force, 0.0);
     found = i;

@@ -42,7 +42,7 @@ static const double unresolved_share = 1e-6;
 static bool is_error_of_solver(const struct Resolution *resolution, size_t contact) {
   if (resolution->occasion != AT_EVENT || resolution->jumped || may_change_gaps(resolution)) return false;
   bool is_other = !is_hit(resolution, contact_indicator(resolution->switches, contact));
-  return resolution->first_mode[contact] != 0.0 ||
+  return first_mode_of(resolution, resolution->switches->contacts[contact].mode) > 0.0 ||
          (is_other && -contact_value(resolution, contact, CONTACT_RATE) <= tolerances_of(resolution).rest);
 }
 

@@ -4,8 +4,7 @@
 #include "nonsmooth/resolution.h"
 
 /*
- * Closes contacts that touch at rest without a force, because others carry the load, if they press once all share
- * it. Does so at most once per event. Sets *again if there are any. Returns NULL, or the reason why the motion
- * cannot continue.
+ * Closes contacts that touch at rest without a force, because others carry the load. Does so at most once an event for
+ * each contact. False if there are none.
  */
-const char *contacts_share_load(struct Resolution *resolution, bool *again);
+bool contacts_share_load(struct Resolution *resolution);
