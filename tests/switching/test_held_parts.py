@@ -93,6 +93,11 @@ def pushed(count, drive):
     return text
 
 
+# A clamp in a vertical plane holds a block that stands on a ground, and moves off smoothly.
+CLAMPED = """<parameter name="m" start="1" min="0"/><parameter name="F" start="15"/><parameter name="mg" start="0.3"/><parameter name="cx" start="0"/><parameter name="cz" start="1"/>
+  <coordinate name="hx" velocity="vhx" acceleration="cx*time^{0}"/><coordinate name="hz" velocity="vhz" acceleration="cz*time^{0}"/>
+  <coordinate name="x" velocity="vx"/><coordinate name="z" velocity="vz"/><particle mass="m" x="x" z="z"/><gravity z="-9.81"/>
+  <contact name="ground" gap="z"/><friction name="clamp" velocity="vx - vhx" across="vz - vhz" force="F"/><friction name="sole" velocity="vx" force="mg*ground.force"/>"""
 # A block of 2 kg on a ground that holds 5 N; a clamp that holds F begins to move along it.
 PULLED = """<coordinate name="h" velocity="vh" acceleration="0.3*time^{}"/><coordinate name="x" velocity="vx"/><coordinate name="z" velocity="vz"/>
   <particle mass="2" x="x" z="z"/><gravity z="-10"/><contact name="ground" gap="z"/><parameter name="F" start="1"/>
@@ -127,6 +132,7 @@ SYSTEMS = {
     "YokeBySine": YOKE.replace("cos(p)", "sin(p)").replace('start="0.3"/><kin', 'start="0"/><kin'),
     "LeavingLadder": LADDER,
     **{f"PulledAlong{n}": PULLED.format(n) for n in (1, 2, 3)},
+    **{f"ClampedInPlane{n}": CLAMPED.format(n) for n in (0, 1, 2, 3, 4)},
     **{f"LiftedByPalm{n}": f"""<coordinate name="h" velocity="vh" acceleration="{(n + 1) * (n + 2)}*time^{n}"/><coordinate name="z" velocity="vz"/><particle mass="1" z="z"/><gravity z="-10"/>
       <contact name="table" gap="z"/><contact name="palm" gap="z - h"/>""" for n in (0, 1, 3)},
     "WormAtStop": WORM.format("phi", 0.05),
@@ -283,6 +289,24 @@ def test_a_clamp_pulls_along_a_ground(power, F, tolerance):
                              start_values={"F": F}, output=["x", "vh"])  # fmt: skip
     assert rows["x"][-1] == pytest.approx(expected, abs=10 * tolerance)
     assert rows["vh"][-1] == pytest.approx(0.3 * 2 ** (power + 1) / (power + 1), rel=10 * tolerance)
+
+
+@pytest.mark.parametrize("power", [0, 1, 2, 3, 4])
+@pytest.mark.parametrize("seed", range(12))
+def test_a_clamp_in_a_vertical_plane_moves_off(power, seed):
+    """A clamp that holds the weight and the largest acceleration lifts the block; a weak one that moves up or down leaves it at rest."""
+    random = np.random.default_rng(seed)
+    m, mg = 10 ** random.uniform(-1, 1), random.uniform(0.1, 0.9)
+    holds, tolerance = seed % 2 == 0, 10.0 ** -random.integers(4, 9)
+    cz = random.choice([1, 1 if holds else -1]) * 10 ** random.uniform(-1, 0.5)
+    cx = random.choice([0, random.uniform(-2, 2)]) if holds else 0.0
+    F = 1.05 * m * np.hypot(cx * 2**power, 9.81 + cz * 2**power) if holds else m * 9.81 * random.uniform(0.3, 0.95)
+    names = ["x", "z", "hx", "hz"]
+    rows = fmpy.simulate_fmu(str(fmu.archive(f"ClampedInPlane{power}")), fmi_type="CoSimulation", stop_time=2.0, output_interval=0.02, relative_tolerance=tolerance,
+                             start_values=dict(m=m, F=F, mg=mg, cx=cx, cz=cz), output=names)  # fmt: skip
+    way = np.array([cx, cz]) * 2 ** (power + 2) / ((power + 1) * (power + 2))
+    expected = np.concatenate([way if holds else np.zeros(2), way])
+    assert [rows[name][-1] for name in names] == pytest.approx(expected, abs=10 * tolerance * max(1.0, np.abs(way).max()))
 
 
 @KINDS

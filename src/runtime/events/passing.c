@@ -405,14 +405,17 @@ enum { LOOK_LIMIT = 20 };
 /* In communication steps: the shortest moment after which constraints may contradict each other clearly. */
 static const double least_moment = 1e-4;
 
-/* True if the modes change for a later time, to which the state is extrapolated. If none are found there, they stay. */
+/*
+ * True if other constraints are active at a later time, to which the state is extrapolated. If no modes are found there,
+ * they stay.
+ */
 static bool change_modes(struct Instance *instance, double begin, double time) {
-  bool changes;
+  bool switches;
   double *state = instance->event_state, *rate = state + lagrangian.state_count;
   if (!lagrangian.solver->interpolate(instance, begin, state)) return false;
   if (evaluate_prepare(instance) != STATUS_DONE || !solver_derivatives(instance, begin, state, rate)) return false;
   for (size_t i = 0; i < lagrangian.state_count; i++) state[i] += (time - begin) * rate[i];
-  return resolve_or_restore(instance, time, state, &changes) && changes;
+  return resolve_or_restore(instance, time, state, &switches) && switches;
 }
 
 /* Takes the modes of a moment after a time, and the state there. False if none change. */
@@ -426,10 +429,11 @@ static bool pass_moment(struct Instance *instance, const struct CommunicationSte
 static bool take_later_modes(struct Instance *instance, const struct CommunicationStep *step, double begin,
                              struct EventProgress *progress) {
   bool changes = false;
+  double longest = step->end - fmin(begin, step->start); /* the solver's step may begin before the communication step */
   progress->looks = begin > progress->looked_ahead ? 0 : progress->looks + 1;
   if (!(begin < step->end) || progress->looks == LOOK_LIMIT) return false;
   for (double moment = 10.0 * least_moment; moment <= 1.0 && !changes; moment *= 10.0)
-    changes = change_modes(instance, begin, begin + moment * (step->end - step->start));
+    changes = change_modes(instance, begin, begin + moment * longest);
   if (!changes || !take_event_state(instance, begin)) return false;
   if (!continue_from(instance, step, begin, progress)) return false;
   progress->looked_ahead = begin;

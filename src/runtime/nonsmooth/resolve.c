@@ -295,20 +295,35 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
   return problem;
 }
 
-bool resolve_or_restore(struct Instance *instance, double time, double *state, bool *changed) {
+/* True if another constraint of a contact or friction is active than with these modes. */
+static bool other_constraints_are_active(const struct Instance *instance, const double *mode) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  const double *before = mode - (lagrangian.parameter_count - switches->mode_count);
+  bool other = false;
+  for (size_t i = 0; i < switches->contact_count; i++)
+    other |= contact_holds(instance, i) != (before[switches->contacts[i].mode] > 0.0);
+  for (size_t i = 0; i < switches->friction_count; i++)
+    other |= friction_holds(instance, i) != (before[switches->frictions[i].mode] == 0.0);
+  return other;
+}
+
+bool resolve_or_restore(struct Instance *instance, double time, double *state, bool *switches) {
   size_t modes = lagrangian.switches->mode_count * sizeof(double);
   double *mode = modes_of(instance), *before = scratch_take(instance, SCRATCH_MODES, modes);
   struct DeferredLog deferred;
+  bool changed;
+  *switches = false;
   if (before == NULL) return solver_is_out_of_memory(instance);
   memcpy(before, mode, modes);
   log_defer(instance, &deferred);
-  bool agrees = resolve(instance, time, state, AT_CHANGE, 0, changed) == NULL;
+  bool agrees = resolve(instance, time, state, AT_CHANGE, 0, &changed) == NULL;
   log_release(instance, &deferred);
-  if (agrees) log_write_deferred(instance, &deferred);
-  else {
+  if (agrees) {
+    log_write_deferred(instance, &deferred);
+    *switches = other_constraints_are_active(instance, before);
+  } else {
     memcpy(mode, before, modes);
     instance->parameter_constants_are_stale = true;
-    *changed = false;
   }
   scratch_return(instance, SCRATCH_MODES);
   return agrees;

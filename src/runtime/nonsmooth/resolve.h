@@ -13,9 +13,9 @@ const char *resolve(struct Instance *instance, double time, double *state, enum 
 
 /*
  * Does the same for an expression or a state that has changed at this time. False if the motion cannot continue there;
- * then the modes stay, and nothing is logged.
+ * then the modes stay, and nothing is logged. Sets *switches if other constraints of contacts or frictions are active.
  */
-bool resolve_or_restore(struct Instance *instance, double time, double *state, bool *changed);
+bool resolve_or_restore(struct Instance *instance, double time, double *state, bool *switches);
 
 /* Logs which contact friction jams at a state where the motion ends; false if it jams none. */
 bool resolve_explain(struct Instance *instance, double time, double *state);

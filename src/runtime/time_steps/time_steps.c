@@ -24,9 +24,9 @@ enum { TIME_STEP_LIMIT = 10000 };
 static bool modes_agree(struct Instance *instance, double time, double *state) {
   size_t size = lagrangian.state_count * sizeof *state;
   double *copy = state + lagrangian.state_count;
-  bool changed;
+  bool switches;
   memcpy(copy, state, size);
-  bool agree = resolve_or_restore(instance, time, copy, &changed);
+  bool agree = resolve_or_restore(instance, time, copy, &switches);
   if (agree) memcpy(state, copy, size);
   return agree;
 }
