@@ -10,6 +10,9 @@ static const double usual_least_pivot = 1e-11;
 /*
  * Solves n equations by elimination with row pivoting, in O(n^3). Each of the n rows has n + 1 numbers,
  * the last one its right side, which the solution replaces. The matrix should be scaled to a size of 1. False if a
- * pivot is at most least_pivot, and so counts as 0.
+ * pivot is at most least_pivot, and so counts as 0. order: n indices, or NULL; which equation each row has become.
  */
-bool solve_by_elimination(size_t n, double *rows, double least_pivot);
+bool solve_by_elimination(size_t n, double *rows, double least_pivot, size_t *order);
+
+/* Solves the equations that were eliminated into rows, with their order, for another right side. solution: n numbers. */
+void solve_eliminated(size_t n, const double *rows, const size_t *order, const double *right, double *solution);

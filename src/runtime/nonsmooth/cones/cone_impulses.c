@@ -53,7 +53,7 @@ static double continue_by_newton(const struct Resolution *resolution, const stru
   *size = 0.0;
   if (!create_cones(resolution, impulses, rate, impulse, &cones)) return INFINITY;
   bool moves = cones_fill_scales(&cones);
-  double miss = moves ? cones_relative_miss(&cones, cone_newton(&cones, cones.work)) : INFINITY;
+  double miss = moves ? cones_relative_miss(&cones, cone_newton(&cones, whole_step, cones.work)) : INFINITY;
   *size = cones_largest(&cones);
   scratch_return(resolution->instance, SCRATCH_CONES);
   return miss;

@@ -8,8 +8,8 @@
  * where w is cones->scale. A row is scaled to a rate: it is u where the projection changes nothing, w p where a contact
  * opens, and w (p - limit direction) where a friction slides. The rows are piecewise linear, except for the directions
  * of slip. The derivative is factored by elimination with complete pivoting, O(n^3) a step. Impulses that it does not
- * determine keep their values. There is no line search: the method ends at the first step that does not reduce the
- * residual enough, and undoes that step.
+ * determine keep their values. A step may be halved until it reduces the residual enough, as whole ones may go back and
+ * forth between two pieces. The method ends where none does.
  */
 #include "nonsmooth/cones/cone_newton.h"
 
@@ -22,11 +22,14 @@
 /* Largest number of Newton steps; a few suffice once the active pieces are right. */
 enum { NEWTON_LIMIT = 60 };
 
+/* A step must reduce the residual by this share of its length, which is 1 for a whole step. */
+static const double least_gain_of_step = 0.1;
+
 /*
- * A step must reduce the residual to less than this fraction. Smaller pivots, relative to the largest, count as 0.
- * Smaller residuals, relative to the largest impulse as a rate, are rounding errors.
+ * Smaller pivots, relative to the largest, count as 0. Smaller residuals, relative to the largest impulse as a rate, are
+ * rounding errors.
  */
-static const double least_gain_of_step = 0.9, least_law_pivot = 1e-13, rounded_miss = 2.0 * DBL_EPSILON;
+static const double least_law_pivot = 1e-13, rounded_miss = 2.0 * DBL_EPSILON;
 
 /* A Newton iteration for n impulses. Matrices have n x n elements, by rows. */
 struct ConeNewton {
@@ -173,22 +176,29 @@ static void find_step(const struct ConeNewton *newton) {
   }
 }
 
-double cone_newton(struct Cones *cones, double *work) {
-  size_t n = cones->impulses->count, bytes = n * sizeof(double);
-  struct ConeNewton newton = {.cones = cones, .n = n};
-  lay_out_newton(&newton, n, work);
-  double miss = fill_equations(&newton);
-  for (int count = 0; count < NEWTON_LIMIT && miss > rounded_miss * cones_largest(cones); count++) {
-    memcpy(newton.before, cones->impulse, bytes);
+/* Takes the step, or a part of it that reduces the residual enough. Returns the residual; that before if none does. */
+static double take_newton_step(const struct ConeNewton *newton, double miss, double shortest_step) {
+  struct Cones *cones = newton->cones;
+  size_t bytes = newton->n * sizeof(double);
+  memcpy(newton->before, cones->impulse, bytes);
+  for (double length = 1.0; length >= shortest_step; length *= 0.5) {
+    for (size_t i = 0; i < newton->n; i++)
+      if (cones->scale[i] > 0.0) cones->impulse[i] = newton->before[i] - length * newton->step[i] / cones->scale[i];
+    double next = fill_equations(newton);
+    if (next < (1.0 - least_gain_of_step * length) * miss) return next;
+  }
+  memcpy(cones->impulse, newton->before, bytes);
+  return miss;
+}
+
+double cone_newton(struct Cones *cones, double shortest_step, double *work) {
+  struct ConeNewton newton = {.cones = cones, .n = cones->impulses->count};
+  lay_out_newton(&newton, newton.n, work);
+  double miss = fill_equations(&newton), before = INFINITY;
+  for (int count = 0; count < NEWTON_LIMIT && miss < before && miss > rounded_miss * cones_largest(cones); count++) {
+    before = miss;
     find_step(&newton);
-    for (size_t i = 0; i < n; i++)
-      if (cones->scale[i] > 0.0) cones->impulse[i] -= newton.step[i] / cones->scale[i];
-    double next = fill_equations(&newton);
-    if (!(next < least_gain_of_step * miss)) {
-      memcpy(cones->impulse, newton.before, bytes);
-      break;
-    }
-    miss = next;
+    miss = take_newton_step(&newton, miss, shortest_step);
   }
   return miss;
 }

@@ -117,7 +117,7 @@ double cones_search_from(struct Cones *cones, enum Sweeps kind, int trials) {
     memcpy(cones->impulse, cones->swept, bytes);
     if (trial > 0) sweep_impulses(cones, kind, kind == IN_TURN ? LAW_SWEEPS << (trial - 1) : LAW_SWEEPS * trial);
     memcpy(cones->swept, cones->impulse, bytes);
-    double miss = cones_relative_miss(cones, cone_newton(cones, cones->work));
+    double miss = cones_relative_miss(cones, cone_newton(cones, whole_step, cones->work));
     if (miss < least) memcpy(cones->best, cones->impulse, bytes);
     least = fmin(least, miss);
   }
@@ -136,13 +136,13 @@ size_t cones_lay_out(struct Cones *cones, size_t n, double *block) {
 
 /* True if the residual is small, or a rounding error of velocities, as in the slowest impacts. */
 static bool is_accepted(struct Cones *cones, double miss) {
-  return miss <= law_roughly_holds || cone_newton(cones, cones->work) <= cones->impulses->rounding;
+  return miss <= law_roughly_holds || cone_newton(cones, whole_step, cones->work) <= cones->impulses->rounding;
 }
 
 /* Finds impulses of contacts without friction by the active set method. False if they do not fulfil the law. */
 static bool is_pressed(struct Cones *cones) {
   active_set_find(cones, cones->work);
-  double miss = cone_newton(cones, cones->work);
+  double miss = cone_newton(cones, whole_step, cones->work);
   return miss <= cones->impulses->uncertain || is_accepted(cones, cones_relative_miss(cones, miss));
 }
 

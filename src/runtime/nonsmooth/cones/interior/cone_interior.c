@@ -9,7 +9,7 @@
  * solutions of s o y = mu e, e the unit, for mu > 0. The method follows it as mu falls to 0. With the scaling Q of
  * Nesterov and Todd, Q s = y, the linearized equations for a step dp are
  *
- *   (W + Q) dp = mu / s - rate - W p,   y + dy = mu / s - Q ds.
+ *   (W + Q) dp = t - rate - W p,   y + dy = t - Q ds,   t = mu / s.
  *
  * A step takes one elimination, O(n^3), and ends before the boundary. Where several impulses fulfil the law, the path
  * ends in the interior of their set: forces of redundant supports have a margin to their limits. Once mu is small, the
@@ -21,6 +21,11 @@
  * F. Cadoux: Applications of an existence result for the Coulomb friction problem, Recent Advances in Contact
  * Mechanics, 2013). Where nothing slides, u = 0, and the first such problem finds the forces if there are any. For forces
  * it therefore comes first: frictions that can carry the load do, even if they could also slip.
+ *
+ * The path of Coulomb's law may come near others. It is followed closely: mu falls by a given factor. The convex problem
+ * has one path, and longer steps: a predictor with t = 0, then a corrector. That has the mu which the predictor allows,
+ * and the terms of second order that it left out (S. Mehrotra: On the implementation of a primal-dual interior point
+ * method, SIAM Journal on Optimization 2, 1992).
  */
 #include "nonsmooth/cones/interior/cone_interior.h"
 
@@ -28,21 +33,22 @@
 #include <string.h>
 
 #include "nonsmooth/cones/cone_newton.h"
+#include "nonsmooth/cones/interior/cone_pairs.h"
 #include "support/arena.h"
 #include "support/elimination.h"
 
 /* Steps of a path at most; steps between two trials of Newton's method; associated problems at most. */
 enum { PATH_STEPS = 40, TRIAL_STEPS = 3, ASSOCIATED_LIMIT = 60, UNDAMPED_LIMIT = 20 };
 
-/* Elements of a friction's pairs: the limit and up to two directions. */
-enum { CONE_SIZE = 3 };
-
 /* Part of the way to the boundary that a step keeps. */
 static const double inside = 0.99;
 
-/* mu of the next point of the path, relative to the present one, after a long step and after a short one. */
+/* mu of the next point of the path of Coulomb's law, relative to the present one, after a long step and a short one. */
 static const double centering[] = {0.1, 0.5};
 static const double long_step = 0.6;
+
+/* Least mu of a corrector, relative to the present one. */
+static const double least_centering = 1e-3;
 
 /*
  * Pivots of W + Q that count as 0; elements of W are of order 1. Q falls with mu, and determines the forces that W does
@@ -71,11 +77,15 @@ struct Interior {
   double *x, *dual;         /* impulse and rate behind */
   double *head, *dual_head; /* limit and y0, at the first row of a friction */
   double *dx, *ddual, *dhead, *ddual_head;
-  double *shift;        /* mu |u| of the last solution, for the associated problem */
-  double *equations;    /* n rows of n + 1 */
-  double *best;         /* impulses with the least residual */
-  double *newton;       /* workspace of cone_newton() */
-  double least, enough; /* this residual, and one that ends the search */
+  double *target, *target_head; /* t of a step */
+  struct Scaling *scaling;      /* at the first row of a friction */
+  double *shift;                /* mu |u| of the last solution, for the associated problem */
+  double *equations;            /* n rows of n + 1 */
+  size_t *order;                /* of the eliminated equations */
+  double *missing, *right;      /* right sides without and with t */
+  double *best;                 /* impulses with the least residual */
+  double *newton;               /* workspace of cone_newton() */
+  double least, enough;         /* this residual, and one that ends the search */
   bool is_associated, is_centered;
 };
 
@@ -83,9 +93,11 @@ struct Interior {
 static size_t lay_out_interior(struct Interior *interior, size_t n, double *work) {
   struct Arena arena = {(uintptr_t)work};
   ARENA_NUMBERS(&arena, n, &interior->unit, &interior->x, &interior->dual, &interior->head, &interior->dual_head,
-                &interior->dx, &interior->ddual, &interior->dhead, &interior->ddual_head, &interior->shift,
-                &interior->best);
+                &interior->dx, &interior->ddual, &interior->dhead, &interior->ddual_head, &interior->target,
+                &interior->target_head, &interior->shift, &interior->missing, &interior->right, &interior->best);
   ARENA_NUMBERS(&arena, n * (n + 1), &interior->equations);
+  ARENA_TAKE(&arena, interior->scaling, n);
+  ARENA_TAKE(&arena, interior->order, n);
   ARENA_NUMBERS(&arena, cone_newton_work_count(n), &interior->newton);
   return (arena.next - (uintptr_t)work) / sizeof(double);
 }
@@ -139,49 +151,6 @@ static void copy_pair(const struct Interior *interior, size_t row, const double 
   for (size_t i = 1; i < size_of_pair(interior, row); i++) pair[i] = tail[row + i - 1];
 }
 
-static double length_of_tail(const double *pair, size_t size) {
-  return size == 2 ? fabs(pair[1]) : hypot(pair[1], pair[2]);
-}
-
-/* Returns a^2 - |b|^2 of (a, b), which is positive inside of the cone. */
-static double cone_determinant(const double *pair, size_t size) {
-  double length = length_of_tail(pair, size);
-  return (pair[0] - length) * (pair[0] + length);
-}
-
-/* Fills 1 / s of the cone's algebra. */
-static void invert_pair(const double *pair, size_t size, double *inverse) {
-  double determinant = cone_determinant(pair, size);
-  for (size_t i = 0; i < size; i++) inverse[i] = (i == 0 ? 1.0 : -1.0) * pair[i] / determinant;
-}
-
-/*
- * Fills the scaling Q = (2 v v^T - R) / eta, R = diag(1, -1, -1), with Q s = y (Y. E. Nesterov and M. J. Todd:
- * Self-scaled barriers, Mathematics of Operations Research 22, 1997).
- */
-static void fill_scaling(const double *s, const double *y, size_t size, double scaling[CONE_SIZE][CONE_SIZE]) {
-  double of_s = sqrt(cone_determinant(s, size)), of_y = sqrt(cone_determinant(y, size)), product = 0.0;
-  double v[CONE_SIZE];
-  for (size_t i = 0; i < size; i++) product += s[i] / of_s * (y[i] / of_y);
-  double gamma = sqrt(0.5 * (1.0 + product));
-  for (size_t i = 0; i < size; i++) v[i] = ((i == 0 ? 1.0 : -1.0) * s[i] / of_s + y[i] / of_y) / (2.0 * gamma);
-  for (size_t i = 0; i < size; i++)
-    for (size_t j = 0; j < size; j++) {
-      double reflection = i != j ? 0.0 : i == 0 ? 1.0 : -1.0;
-      scaling[i][j] = (2.0 * v[i] * v[j] - reflection) * of_y / of_s;
-    }
-}
-
-/* Returns the largest step that keeps a pair in the cone. */
-static double longest_step_in_cone(const double *pair, const double *change, size_t size) {
-  double b = pair[0] * change[0], length = INFINITY;
-  for (size_t i = 1; i < size; i++) b -= pair[i] * change[i];
-  double a = cone_determinant(change, size), c = cone_determinant(pair, size), root = b * b - a * c;
-  if ((a < 0.0 || b < 0.0) && root >= 0.0 && sqrt(root) > b) length = c / (sqrt(root) - b);
-  if (change[0] < 0.0) length = fmin(length, -pair[0] / change[0]);
-  return length;
-}
-
 /* Fills a row of W, with minus the rate behind as its right side. */
 static void fill_row(const struct Interior *interior, size_t row) {
   double *equation = interior->equations + row * (interior->n + 1);
@@ -191,20 +160,21 @@ static void fill_row(const struct Interior *interior, size_t row) {
     behind += equation[j] * interior->x[j];
   }
   if (!takes_part(interior, row)) equation[row] = 1.0;
-  equation[interior->n] = -behind - (interior->is_associated ? interior->shift[row] : 0.0);
+  equation[interior->n] = 0.0;
+  interior->missing[row] = -behind - (interior->is_associated ? interior->shift[row] : 0.0);
 }
 
 /* Adds the terms by which the associated law couples a friction with the rows that decide on its limit. */
-static void associate(const struct Interior *interior, size_t row, double scaling[CONE_SIZE][CONE_SIZE],
-                      double target) {
+static void associate(const struct Interior *interior, size_t row) {
+  const struct Scaling *scaling = &interior->scaling[row];
   size_t deciding = interior->cones->impulses->deciding_count, width = interior->n + 1;
   for (size_t i = 0; i < deciding; i++) {
     double *equation = interior->equations + i * width, coefficient = scaled_coefficient(interior, row, i);
     if (coefficient == 0.0) continue;
     for (size_t j = 0; j < deciding; j++)
-      equation[j] += coefficient * scaling[0][0] * scaled_coefficient(interior, row, j);
-    for (size_t k = 1; k < size_of_pair(interior, row); k++) equation[row + k - 1] += coefficient * scaling[0][k];
-    equation[interior->n] += coefficient * target;
+      equation[j] += coefficient * scaling_element(scaling, 0, 0) * scaled_coefficient(interior, row, j);
+    for (size_t k = 1; k < size_of_pair(interior, row); k++)
+      equation[row + k - 1] += coefficient * scaling_element(scaling, 0, k);
   }
 }
 
@@ -213,78 +183,139 @@ static double missing_limit(const struct Interior *interior, size_t row) {
   return given_limit(interior, row) + limit_of(interior, row, interior->x) - interior->head[row];
 }
 
-static void fill_step_of_friction(const struct Interior *interior, size_t row, double mu) {
-  size_t size = size_of_pair(interior, row), width = interior->n + 1;
-  double s[CONE_SIZE] = {0.0}, y[CONE_SIZE] = {0.0}, inverse[CONE_SIZE], scaling[CONE_SIZE][CONE_SIZE];
+static void fill_equations_of_friction(const struct Interior *interior, size_t row) {
+  size_t size = size_of_pair(interior, row);
+  double s[CONE_SIZE] = {0.0}, y[CONE_SIZE] = {0.0};
+  struct Scaling *scaling = &interior->scaling[row];
   copy_pair(interior, row, interior->head, interior->x, s);
   copy_pair(interior, row, interior->dual_head, interior->dual, y);
-  fill_scaling(s, y, size, scaling);
-  invert_pair(s, size, inverse);
-  double missing = missing_limit(interior, row);
+  *scaling = scaling_of(s, y, size);
   for (size_t k = 1; k < size; k++) {
-    double *equation = interior->equations + (row + k - 1) * width;
+    double *equation = interior->equations + (row + k - 1) * (interior->n + 1);
     for (size_t i = 0; i < interior->cones->impulses->deciding_count; i++)
-      equation[i] += scaling[k][0] * scaled_coefficient(interior, row, i);
-    for (size_t j = 1; j < size; j++) equation[row + j - 1] += scaling[k][j];
-    equation[interior->n] += mu * inverse[k] - scaling[k][0] * missing;
+      equation[i] += scaling_element(scaling, k, 0) * scaled_coefficient(interior, row, i);
+    for (size_t j = 1; j < size; j++) equation[row + j - 1] += scaling_element(scaling, k, j);
   }
-  if (interior->is_associated) associate(interior, row, scaling, mu * inverse[0] - scaling[0][0] * missing);
+  if (interior->is_associated) associate(interior, row);
 }
 
-/* Fills the equations of the step to the point of the path at mu. */
-static void fill_step_equations(const struct Interior *interior, double mu) {
+/* Fills W + Q. */
+static void fill_path_equations(const struct Interior *interior) {
   for (size_t row = 0; row < interior->n; row++) fill_row(interior, row);
   for (size_t row = 0; row < interior->n; row += cones_row_count(interior->cones, row)) {
-    double *equation = interior->equations + row * (interior->n + 1);
     if (!takes_part(interior, row)) continue;
-    if (!is_contact_row(interior, row)) {
-      fill_step_of_friction(interior, row, mu);
-      continue;
-    }
-    equation[row] += interior->dual[row] / interior->x[row];
-    equation[interior->n] += mu / interior->x[row];
+    if (is_contact_row(interior, row))
+      interior->equations[row * (interior->n + 2)] += interior->dual[row] / interior->x[row];
+    else fill_equations_of_friction(interior, row);
+  }
+}
+
+static void add_target_of_friction(const struct Interior *interior, size_t row) {
+  const struct Scaling *scaling = &interior->scaling[row];
+  double missing = missing_limit(interior, row);
+  double head = interior->target_head[row] - scaling_element(scaling, 0, 0) * missing;
+  for (size_t k = 1; k < size_of_pair(interior, row); k++)
+    interior->right[row + k - 1] += interior->target[row + k - 1] - scaling_element(scaling, k, 0) * missing;
+  for (size_t i = 0; i < interior->cones->impulses->deciding_count && interior->is_associated; i++)
+    interior->right[i] += scaled_coefficient(interior, row, i) * head;
+}
+
+/* Fills the right sides for t. */
+static void fill_right_sides(const struct Interior *interior) {
+  memcpy(interior->right, interior->missing, interior->n * sizeof *interior->right);
+  for (size_t row = 0; row < interior->n; row += cones_row_count(interior->cones, row)) {
+    if (!takes_part(interior, row)) continue;
+    if (is_contact_row(interior, row)) interior->right[row] += interior->target[row];
+    else add_target_of_friction(interior, row);
   }
 }
 
 /* Computes the step of a friction's duals from that of the impulses. Returns the longest step of its pairs. */
-static double find_step_of_friction(const struct Interior *interior, size_t row, double mu) {
+static double find_step_of_friction(const struct Interior *interior, size_t row) {
   size_t size = size_of_pair(interior, row);
-  double s[CONE_SIZE] = {0.0}, y[CONE_SIZE] = {0.0}, ds[CONE_SIZE] = {0.0}, dy[CONE_SIZE] = {0.0};
-  double scaling[CONE_SIZE][CONE_SIZE];
+  double s[CONE_SIZE] = {0.0}, y[CONE_SIZE] = {0.0}, ds[CONE_SIZE] = {0.0}, dy[CONE_SIZE] = {0.0}, t[CONE_SIZE];
   copy_pair(interior, row, interior->head, interior->x, s);
   copy_pair(interior, row, interior->dual_head, interior->dual, y);
+  copy_pair(interior, row, interior->target_head, interior->target, t);
   interior->dhead[row] = limit_of(interior, row, interior->dx) + missing_limit(interior, row);
   copy_pair(interior, row, interior->dhead, interior->dx, ds);
-  fill_scaling(s, y, size, scaling);
-  invert_pair(s, size, dy);
-  for (size_t i = 0; i < size; i++) {
-    dy[i] = mu * dy[i] - y[i];
-    for (size_t j = 0; j < size; j++) dy[i] -= scaling[i][j] * ds[j];
-  }
+  scale_pair(&interior->scaling[row], size, ds, dy);
+  for (size_t i = 0; i < size; i++) dy[i] = t[i] - y[i] - dy[i];
   interior->ddual_head[row] = dy[0];
   for (size_t i = 1; i < size; i++) interior->ddual[row + i - 1] = dy[i];
   return fmin(longest_step_in_cone(s, ds, size), longest_step_in_cone(y, dy, size));
 }
 
-static double find_step_of_contact(const struct Interior *interior, size_t row, double mu) {
+static double find_step_of_contact(const struct Interior *interior, size_t row) {
   double x = interior->x[row], dual = interior->dual[row], *dx = &interior->dx[row], *ddual = &interior->ddual[row];
-  *ddual = mu / x - dual - dual / x * *dx;
+  *ddual = interior->target[row] - dual - dual / x * *dx;
   return fmin(*dx < 0.0 ? -x / *dx : INFINITY, *ddual < 0.0 ? -dual / *ddual : INFINITY);
 }
 
-/* Finds a step. Returns its length, or 0 if the equations are singular to rounding. */
-static double find_path_step(const struct Interior *interior, double mu) {
-  size_t n = interior->n;
+/* Finds the step for t. Returns its length up to the boundary; NaN if it is not finite. */
+static double find_step_to_targets(const struct Interior *interior) {
   double longest = INFINITY;
-  fill_step_equations(interior, mu);
-  if (!solve_by_elimination(n, interior->equations, least_path_pivot)) return 0.0;
-  for (size_t i = 0; i < n; i++) interior->dx[i] = interior->equations[i * (n + 1) + n];
-  for (size_t row = 0; row < n; row += cones_row_count(interior->cones, row)) {
+  fill_right_sides(interior);
+  solve_eliminated(interior->n, interior->equations, interior->order, interior->right, interior->dx);
+  for (size_t row = 0; row < interior->n; row += cones_row_count(interior->cones, row)) {
     if (!takes_part(interior, row)) continue;
-    double length = is_contact_row(interior, row) ? find_step_of_contact(interior, row, mu)
-                                                  : find_step_of_friction(interior, row, mu);
+    double length =
+        is_contact_row(interior, row) ? find_step_of_contact(interior, row) : find_step_of_friction(interior, row);
+    if (isnan(length)) return length;
     longest = fmin(longest, length);
   }
+  return longest;
+}
+
+/* Returns mu, the mean product of the pairs, behind a part of the step. */
+static double mean_product(const struct Interior *interior, double length) {
+  double sum = 0.0;
+  for (size_t i = 0; i < interior->n; i++) {
+    sum += (interior->x[i] + length * interior->dx[i]) * (interior->dual[i] + length * interior->ddual[i]);
+    sum +=
+        (interior->head[i] + length * interior->dhead[i]) * (interior->dual_head[i] + length * interior->ddual_head[i]);
+  }
+  return sum / (double)interior->degree;
+}
+
+static void find_target_of_friction(const struct Interior *interior, size_t row, double mu) {
+  size_t size = size_of_pair(interior, row);
+  double s[CONE_SIZE] = {0.0}, ds[CONE_SIZE] = {0.0}, dy[CONE_SIZE] = {0.0}, target[CONE_SIZE];
+  copy_pair(interior, row, interior->head, interior->x, s);
+  copy_pair(interior, row, interior->dhead, interior->dx, ds);
+  copy_pair(interior, row, interior->ddual_head, interior->ddual, dy);
+  fill_target(&interior->scaling[row], size, s, ds, dy, mu, target);
+  interior->target_head[row] = target[0];
+  for (size_t i = 1; i < size; i++) interior->target[row + i - 1] = target[i];
+}
+
+/* Fills t with which a step leads to mu, from that of a predictor; for a step of 0 it is mu / s. */
+static void find_targets(const struct Interior *interior, double mu) {
+  for (size_t row = 0; row < interior->n; row += cones_row_count(interior->cones, row)) {
+    if (!takes_part(interior, row)) continue;
+    if (is_contact_row(interior, row))
+      interior->target[row] = (mu - interior->dx[row] * interior->ddual[row]) / interior->x[row];
+    else find_target_of_friction(interior, row, mu);
+  }
+}
+
+/* Finds the predictor. Returns mu of the corrector, relative to the present one. */
+static double predict_path(const struct Interior *interior, double mu) {
+  memset(interior->target, 0, interior->n * sizeof *interior->target);
+  memset(interior->target_head, 0, interior->n * sizeof *interior->target_head);
+  double ahead = mean_product(interior, fmin(find_step_to_targets(interior), 1.0)) / mu;
+  return fmin(fmax(ahead * ahead * ahead, least_centering), 1.0);
+}
+
+/* Finds a step from a point of the path, given the length of the last one. Returns its length; 0 without equations. */
+static double find_path_step(const struct Interior *interior, double mu, double last) {
+  fill_path_equations(interior);
+  if (!solve_by_elimination(interior->n, interior->equations, least_path_pivot, interior->order)) return 0.0;
+  double share = centering[last < long_step];
+  if (interior->is_associated) share = predict_path(interior, mu);
+  else memset(interior->dx, 0, 4 * interior->n * sizeof *interior->dx); /* and the vectors behind, up to ddual_head */
+  find_targets(interior, share * mu);
+  double longest = find_step_to_targets(interior);
   return isnan(longest) ? 0.0 : fmin(inside * longest, 1.0);
 }
 
@@ -297,20 +328,12 @@ static void take_path_step(const struct Interior *interior, double length) {
   }
 }
 
-/* Returns mu, the mean product of the pairs. */
-static double mean_product(const struct Interior *interior) {
-  double sum = 0.0;
-  for (size_t i = 0; i < interior->n; i++)
-    sum += interior->x[i] * interior->dual[i] + interior->head[i] * interior->dual_head[i];
-  return sum / (double)interior->degree;
-}
-
 /* Tries Newton's method from the point of the path. True if its residual is small enough. */
 static bool try_newton(struct Interior *interior) {
   struct Cones *cones = interior->cones;
   for (size_t i = 0; i < interior->n; i++)
     cones->impulse[i] = takes_part(interior, i) ? interior->x[i] * interior->unit[i] * interior->size : 0.0;
-  double miss = cones_relative_miss(cones, cone_newton(cones, interior->newton));
+  double miss = cones_relative_miss(cones, cone_newton(cones, damped_step, interior->newton));
   if (!(miss < interior->least)) return false;
   interior->least = miss;
   memcpy(interior->best, cones->impulse, interior->n * sizeof *interior->best);
@@ -335,11 +358,11 @@ static bool follow_central_path(struct Interior *interior) {
   double mu = INFINITY, length = 1.0;
   start_path(interior);
   for (int step = 0; step < PATH_STEPS && length > 0.0 && mu > none; step++) {
-    mu = mean_product(interior);
+    mu = mean_product(interior, 0.0);
     bool is_trial = !interior->is_associated && step % TRIAL_STEPS == TRIAL_STEPS - 1;
     bool is_near = interior->is_centered ? mu < nearly_rounded : mu < nearly_none || is_trial;
     if (is_near && try_newton(interior)) return true;
-    length = find_path_step(interior, mu * centering[length < long_step]);
+    length = find_path_step(interior, mu, length);
     take_path_step(interior, length);
   }
   return try_newton(interior);
