@@ -16,6 +16,12 @@ RADIUS, GRAVITY, STOP = 0.1, 9.81, 2.0
 HEAPS = {"TightHeap": (12, 1.0, 0.0), "TightBounces": (8, 0.8, 0.3), "WideHeap": (9, 0.93, 0.0), "SixInARow": (12, 1.2, 0.0)}
 
 
+def gaps_of_disks(count, width):
+    """The gaps of disks in a box, by name: f of the floor, l and r of the walls, c of two disks."""
+    gaps = {f"{side}{i}": gap for i in range(count) for side, gap in zip("flr", (f"y{i} - {RADIUS}", f"x{i} - {RADIUS}", f"{width} - x{i} - {RADIUS}"))}
+    return gaps | {f"c{i}_{j}": f"sqrt((x{i} - x{j})^2 + (y{i} - y{j})^2) - {2 * RADIUS}" for i, j in itertools.combinations(range(count), 2)}
+
+
 def heap(name, count, width, restitution):
     random = np.random.default_rng(count)
     columns = int(width / 0.26)
@@ -26,9 +32,7 @@ def heap(name, count, width, restitution):
             lines.append(f'<coordinate name="{axis}{i}" velocity="v{axis}{i}" start="{value:.17g}" velocityStart="{random.uniform(-1, 1):.17g}"/>')
         lines.append(f'<particle mass="1" x="x{i}" y="y{i}"/>')
     lines.append(f'<potential>{GRAVITY}*({"+".join(f"y{i}" for i in range(count))})</potential>')
-    gaps = {f"{side}{i}": gap for i in range(count) for side, gap in zip("flr", (f"y{i} - {RADIUS}", f"x{i} - {RADIUS}", f"{width} - x{i} - {RADIUS}"))}
-    gaps |= {f"c{i}_{j}": f"sqrt((x{i} - x{j})^2 + (y{i} - y{j})^2) - {2 * RADIUS}" for i, j in itertools.combinations(range(count), 2)}
-    lines += [f'<contact name="{contact}" gap="{gap}" restitution="e"/>' for contact, gap in gaps.items()]
+    lines += [f'<contact name="{contact}" gap="{gap}" restitution="e"/>' for contact, gap in gaps_of_disks(count, width).items()]
     return "\n".join([*lines, "</system>"])
 
 

@@ -11,18 +11,15 @@ import pytest
 from scipy.optimize import nnls
 
 from fmu import build_systems
+from test_heaps import GRAVITY, RADIUS, gaps_of_disks
 
-GRAVITY, RADIUS, ROWS = 9.81, 0.1, 3
-FEET = 5
+ROWS, FEET = 3, 5
 BOARD = f"""<system name="BoardOnFeet"><parameter name="J" start="0.1" min="0"/><parameter name="e" start="0"/>
   <coordinate name="z" velocity="vz"/><coordinate name="th" velocity="w" unit="rad"/><kinetic>vz^2/2 + J*w^2/2</kinetic>
   <potential>{GRAVITY}*z</potential>
   <for index="i" from="1" to="{FEET}"><parameter name="a[i]" start="i"/><contact name="foot[i]" gap="z + a[i]*sin(th)" restitution="e"/></for></system>"""
 PLACES = [(2 * column + row + 1, 1 + row * np.sqrt(3)) for row in range(ROWS) for column in range(ROWS - row)]  # of disks, in radii
-
-
-PAIRS = list(itertools.combinations(range(len(PLACES)), 2))
-WALLS = {"floor": (0, 1), "left": (1, 0), "right": (-1, 0)}  # their normals
+WALLS = {"f": (0, 1), "l": (1, 0), "r": (-1, 0)}  # normals of floor and walls, by the names of gaps_of_disks()
 
 
 def pyramid():
@@ -31,10 +28,7 @@ def pyramid():
     for i, (x, y) in enumerate(PLACES):
         lines.append(f'<coordinate name="x{i}" velocity="vx{i}" start="{x * RADIUS:.17g}"/><coordinate name="y{i}" velocity="vy{i}" start="{y * RADIUS:.17g} + h"/>')
         lines.append(f'<particle mass="1" x="x{i}" y="y{i}"/>')
-        for wall, gap in zip(WALLS, (f"y{i}", f"x{i}", f"{2 * ROWS * RADIUS} - x{i}")):
-            lines.append(f'<contact name="{wall}{i}" gap="{gap} - {RADIUS}" restitution="e"/>')
-    for i, j in PAIRS:
-        lines.append(f'<contact name="pair{i}_{j}" gap="sqrt((x{i} - x{j})^2 + (y{i} - y{j})^2) - {2 * RADIUS}" restitution="e"/>')
+    lines += [f'<contact name="{contact}" gap="{gap}" restitution="e"/>' for contact, gap in gaps_of_disks(len(PLACES), 2 * ROWS * RADIUS).items()]
     return "\n".join([*lines, f'<gravity y="-{GRAVITY}"/></system>'])
 
 
@@ -45,10 +39,10 @@ def touching_in_pyramid():
         for (wall, normal), gap in zip(WALLS.items(), (y - 1, x - 1, 2 * ROWS - x - 1)):
             if gap < 1e-9:
                 columns[f"{wall}{i}"] = {i: np.array(normal)}
-    for i, j in PAIRS:
+    for i, j in itertools.combinations(range(len(PLACES)), 2):
         direction = np.subtract(PLACES[i], PLACES[j]) / 2
         if np.linalg.norm(direction) < 1 + 1e-9:
-            columns[f"pair{i}_{j}"] = {i: direction, j: -direction}
+            columns[f"c{i}_{j}"] = {i: direction, j: -direction}
     rows = [np.concatenate([column.get(i, np.zeros(2)) for i in range(len(PLACES))]) for column in columns.values()]
     return list(columns), np.transpose(rows)
 

@@ -54,8 +54,8 @@ static bool comes_back(const struct Resolution *resolution, size_t branch, doubl
 
 /* True if a branch at a located zero crosses it. The sign of an event's expression stays after other changes. */
 static bool passes(const struct Resolution *resolution, size_t branch) {
-  bool rests = resolution->switches->branches[branch].is_last_sign && resolution_has_changed(resolution);
-  return is_hit(resolution, branch) && resolution->flips[branch] == 0.0 && !resolution->jumped && !rests;
+  if (!is_hit(resolution, branch) || resolution->flips[branch] != 0.0 || resolution->jumped) return false;
+  return !resolution->switches->branches[branch].is_last_sign || !resolution_has_changed(resolution);
 }
 
 /*

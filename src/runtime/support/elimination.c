@@ -39,7 +39,7 @@ static void substitute_back(size_t n, const double *rows, double *right, size_t 
 }
 
 /* Each row keeps its multiples of earlier ones in front of its pivot. */
-bool solve_by_elimination(size_t n, double *rows, double least_pivot, size_t *order) {
+bool eliminate(size_t n, double *rows, double least_pivot, size_t *order) {
   size_t width = n + 1;
   for (size_t i = 0; i < n && order != NULL; i++) order[i] = i;
   for (size_t k = 0; k < n; k++) {
@@ -51,7 +51,12 @@ bool solve_by_elimination(size_t n, double *rows, double least_pivot, size_t *or
       row[k] = share;
     }
   }
-  substitute_back(n, rows, rows + n, width);
+  return true;
+}
+
+bool solve_by_elimination(size_t n, double *rows, double least_pivot) {
+  if (!eliminate(n, rows, least_pivot, NULL)) return false;
+  substitute_back(n, rows, rows + n, n + 1);
   return true;
 }
 

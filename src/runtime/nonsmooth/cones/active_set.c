@@ -119,7 +119,7 @@ static bool solve_set(struct ActiveSet *set) {
     for (size_t j = 0; j < set->count; j++) set->matrix[i * width + j] = scaled_element(set, row, set->index[j]);
     set->matrix[i * width + set->count] = -scaled_rate(set, row);
   }
-  if (!solve_by_elimination(set->count, set->matrix, least_pivot, NULL)) return false;
+  if (!solve_by_elimination(set->count, set->matrix, least_pivot)) return false;
   for (size_t i = 0; i < set->count; i++) set->solution[i] = set->matrix[i * width + set->count];
   return true;
 }

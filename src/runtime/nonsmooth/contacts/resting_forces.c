@@ -239,7 +239,7 @@ static bool find_pressing_forces(const struct RestingForces *resting) {
       a[i * width + j] = resting->presses[i] * resting->presses[j] != 0.0 ? between(resting, i, j) : i == j ? 1.0 : 0.0;
     a[i * width + n] = -resting->presses[i] * resting->free[resting->group[i]];
   }
-  if (!solve_by_elimination(n, a, usual_least_pivot, NULL)) return false;
+  if (!solve_by_elimination(n, a, usual_least_pivot)) return false;
   for (size_t i = 0; i < n; i++) resting->force[resting->group[i]] = a[i * width + n];
   return true;
 }

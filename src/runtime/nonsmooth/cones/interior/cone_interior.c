@@ -83,6 +83,7 @@ struct Interior {
   double *equations;            /* n rows of n + 1 */
   size_t *order;                /* of the eliminated equations */
   double *missing, *right;      /* right sides without and with t */
+  double *missing_limit;        /* limit minus head of a friction; a path may start with some, and removes it */
   double *best;                 /* impulses with the least residual */
   double *newton;               /* workspace of cone_newton() */
   double least, enough;         /* this residual, and one that ends the search */
@@ -94,7 +95,8 @@ static size_t lay_out_interior(struct Interior *interior, size_t n, double *work
   struct Arena arena = {(uintptr_t)work};
   ARENA_NUMBERS(&arena, n, &interior->unit, &interior->x, &interior->dual, &interior->head, &interior->dual_head,
                 &interior->dx, &interior->ddual, &interior->dhead, &interior->ddual_head, &interior->target,
-                &interior->target_head, &interior->shift, &interior->missing, &interior->right, &interior->best);
+                &interior->target_head, &interior->shift, &interior->missing, &interior->right,
+                &interior->missing_limit, &interior->best);
   ARENA_NUMBERS(&arena, n * (n + 1), &interior->equations);
   ARENA_TAKE(&arena, interior->scaling, n);
   ARENA_TAKE(&arena, interior->order, n);
@@ -178,11 +180,6 @@ static void associate(const struct Interior *interior, size_t row) {
   }
 }
 
-/* Returns by how much the head of a friction's pair is less than its limit; a path may start so, and removes it. */
-static double missing_limit(const struct Interior *interior, size_t row) {
-  return given_limit(interior, row) + limit_of(interior, row, interior->x) - interior->head[row];
-}
-
 static void fill_equations_of_friction(const struct Interior *interior, size_t row) {
   size_t size = size_of_pair(interior, row);
   double s[CONE_SIZE] = {0.0}, y[CONE_SIZE] = {0.0};
@@ -190,6 +187,7 @@ static void fill_equations_of_friction(const struct Interior *interior, size_t r
   copy_pair(interior, row, interior->head, interior->x, s);
   copy_pair(interior, row, interior->dual_head, interior->dual, y);
   *scaling = scaling_of(s, y, size);
+  interior->missing_limit[row] = given_limit(interior, row) + limit_of(interior, row, interior->x) - s[0];
   for (size_t k = 1; k < size; k++) {
     double *equation = interior->equations + (row + k - 1) * (interior->n + 1);
     for (size_t i = 0; i < interior->cones->impulses->deciding_count; i++)
@@ -212,7 +210,7 @@ static void fill_path_equations(const struct Interior *interior) {
 
 static void add_target_of_friction(const struct Interior *interior, size_t row) {
   const struct Scaling *scaling = &interior->scaling[row];
-  double missing = missing_limit(interior, row);
+  double missing = interior->missing_limit[row];
   double head = interior->target_head[row] - scaling_element(scaling, 0, 0) * missing;
   for (size_t k = 1; k < size_of_pair(interior, row); k++)
     interior->right[row + k - 1] += interior->target[row + k - 1] - scaling_element(scaling, k, 0) * missing;
@@ -237,7 +235,7 @@ static double find_step_of_friction(const struct Interior *interior, size_t row)
   copy_pair(interior, row, interior->head, interior->x, s);
   copy_pair(interior, row, interior->dual_head, interior->dual, y);
   copy_pair(interior, row, interior->target_head, interior->target, t);
-  interior->dhead[row] = limit_of(interior, row, interior->dx) + missing_limit(interior, row);
+  interior->dhead[row] = limit_of(interior, row, interior->dx) + interior->missing_limit[row];
   copy_pair(interior, row, interior->dhead, interior->dx, ds);
   scale_pair(&interior->scaling[row], size, ds, dy);
   for (size_t i = 0; i < size; i++) dy[i] = t[i] - y[i] - dy[i];
@@ -310,7 +308,7 @@ static double predict_path(const struct Interior *interior, double mu) {
 /* Finds a step from a point of the path, given the length of the last one. Returns its length; 0 without equations. */
 static double find_path_step(const struct Interior *interior, double mu, double last) {
   fill_path_equations(interior);
-  if (!solve_by_elimination(interior->n, interior->equations, least_path_pivot, interior->order)) return 0.0;
+  if (!eliminate(interior->n, interior->equations, least_path_pivot, interior->order)) return 0.0;
   double share = centering[last < long_step];
   if (interior->is_associated) share = predict_path(interior, mu);
   else memset(interior->dx, 0, 4 * interior->n * sizeof *interior->dx); /* and the vectors behind, up to ddual_head */
