@@ -2,7 +2,8 @@
  * Level scheduling. The level of an instruction is 1 + the highest level that it must follow. It follows the last
  * writes of its operands, and the last writes and reads of the slot that its result overwrites. Instructions of one
  * level are independent, but for chains of sums, and are sorted by opcode, function and spaces into runs. In a run those
- * of one form follow each other, and chains stay in order. One pass and one sort: O(n log n). SKIP accesses all slots
+ * of one form follow each other, and chains stay in order. Forms, and instructions of one form, keep the order of the
+ * function: results that it writes one after another are then equally spaced. One pass and two sorts: O(n log n). SKIP accesses all slots
  * of its region.
  */
 #include "program/tables/schedule.h"
@@ -114,10 +115,11 @@ static bool may_return(enum Opcode opcode) {
   return opcode == FACTOR || opcode_metadata(opcode)->result == NUMBER;
 }
 
-/* An instruction with its level, its form, and its number in the function, by which equal ones keep their order. */
+/* An instruction with its level, and its number in the function, by which equal ones keep their order. */
 struct ScheduledInstruction {
   size_t level, number;
-  uint32_t spaces, form;
+  uint32_t spaces;
+  size_t form;  /* the number of the first instruction of its form */
   size_t chain; /* the number of the first instruction of a chain of sums; else its own */
   const struct Instruction *instruction;
 };
@@ -141,6 +143,32 @@ uint32_t spaces_of(const struct Instruction *instruction) {
   return spaces;
 }
 
+/* An instruction of a form. */
+struct FormUse {
+  uint32_t form;
+  size_t number;
+};
+
+static int compare_uses(const void *first, const void *second) {
+  const struct FormUse *a = first, *b = second;
+  if (a->form != b->form) return a->form < b->form ? -1 : 1;
+  return (a->number > b->number) - (a->number < b->number);
+}
+
+/* Returns the form of each instruction of a function, as the number of the first one of that form. */
+static size_t *number_forms(const struct IrFunction *ir, const struct Forms *forms) {
+  struct FormUse *uses = allocate(ir->count, sizeof *uses);
+  size_t *number = allocate(ir->count, sizeof *number);
+  for (size_t i = 0; i < ir->count; i++) uses[i] = (struct FormUse){form_of(forms, &ir->instructions[i]), i};
+  if (ir->count > 0) qsort(uses, ir->count, sizeof *uses, compare_uses);
+  for (size_t i = 0, first = 0; i < ir->count; i++) {
+    if (uses[i].form != uses[first].form) first = i;
+    number[uses[i].number] = uses[first].number;
+  }
+  release(uses);
+  return number;
+}
+
 /* True if the instruction adds to a sum, its first operand. */
 static bool adds_to_sum(const struct Instruction *instruction) {
   enum Opcode opcode = instruction->opcode;
@@ -154,31 +182,17 @@ struct Chains {
   bool *is_long;  /* of each instruction: it belongs to a chain that is longer than chains of its form are many */
 };
 
-static int compare_forms(const void *first, const void *second) {
-  const uint32_t *a = first, *b = second;
-  return (*a > *b) - (*a < *b);
-}
-
-/* Returns how many of the sorted forms are equal to one. */
-static size_t count_of_form(const uint32_t *sorted, size_t count, uint32_t form) {
-  const uint32_t *found = bsearch(&form, sorted, count, sizeof *sorted, compare_forms), *first = found, *last = found;
-  if (found == NULL) return 0;
-  while (first > sorted && first[-1] == form) first--;
-  while (last < sorted + count && *last == form) last++;
-  return (size_t)(last - first);
-}
-
 /*
  * Finds the chains. Many sums of one form, as for the points of a shape, are no chains: all first steps are a run, then
  * all second steps.
  */
-static struct Chains chains_create(const struct IrFunction *ir, size_t local_count, const struct Forms *forms) {
+static struct Chains chains_create(const struct IrFunction *ir, size_t local_count, const size_t *form) {
   struct Chains chains = {allocate(ir->count, sizeof *chains.before), allocate(ir->count, sizeof *chains.is_long)};
   size_t *writer = allocate(local_count, sizeof *writer), *length = allocate(ir->count, sizeof *length);
-  uint32_t *sorted = allocate(ir->count, sizeof *sorted);
+  size_t *count_of_form = allocate(ir->count, sizeof *count_of_form);
   for (size_t i = 0; i < ir->count; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
-    sorted[i] = form_of(forms, instruction);
+    count_of_form[form[i]]++;
     size_t before = adds_to_sum(instruction) ? writer[index_in(instruction->operands[0])] : 0;
     bool continues = before > 0 && ir->instructions[before - 1].opcode == instruction->opcode;
     chains.before[i] = continues ? before : 0;
@@ -186,16 +200,14 @@ static struct Chains chains_create(const struct IrFunction *ir, size_t local_cou
     if (opcode_has_result(instruction->opcode) && space_of(instruction->result) == SPACE_LOCAL)
       writer[index_in(instruction->result)] = i + 1;
   }
-  if (ir->count > 0) qsort(sorted, ir->count, sizeof *sorted, compare_forms);
   for (size_t i = ir->count; i-- > 0;) {
     if (chains.before[i] == 0) continue;
-    if (!chains.is_long[i])
-      chains.is_long[i] = length[i] > count_of_form(sorted, ir->count, form_of(forms, &ir->instructions[i]));
+    if (!chains.is_long[i]) chains.is_long[i] = length[i] > count_of_form[form[i]];
     chains.is_long[chains.before[i] - 1] |= chains.is_long[i];
   }
   release(writer);
   release(length);
-  release(sorted);
+  release(count_of_form);
   return chains;
 }
 
@@ -221,17 +233,14 @@ size_t *schedule_create(const struct SeparatedFunction *function, const struct L
   const struct IrFunction *ir = &function->outer;
   struct Accesses accesses = accesses_create(function, blocks);
   struct ScheduledInstruction *scheduled = allocate(ir->count, sizeof *scheduled);
-  size_t *order = allocate(ir->count, sizeof *order);
-  struct Chains chains = chains_create(ir, accesses.count[SPACE_LOCAL], forms);
+  size_t *order = allocate(ir->count, sizeof *order), *form = number_forms(ir, forms);
+  struct Chains chains = chains_create(ir, accesses.count[SPACE_LOCAL], form);
   size_t last_check = 0;
   for (size_t i = 0; i < ir->count; i++) {
     const struct Instruction *instruction = &ir->instructions[i];
     bool checks = may_return(instruction->opcode);
-    scheduled[i] = (struct ScheduledInstruction){.number = i,
-                                                 .spaces = spaces_of(instruction),
-                                                 .form = form_of(forms, instruction),
-                                                 .chain = i,
-                                                 .instruction = instruction};
+    scheduled[i] = (struct ScheduledInstruction){
+        .number = i, .spaces = spaces_of(instruction), .form = form[i], .chain = i, .instruction = instruction};
     size_t before = chains.is_long[i] ? chains.before[i] : 0;
     if (before == 0 || !continues_chain(&accesses, &scheduled[before - 1], &scheduled[i]))
       scheduled[i].level = level_of(&accesses, instruction, function, blocks, checks ? last_check : 0);
@@ -241,6 +250,7 @@ size_t *schedule_create(const struct SeparatedFunction *function, const struct L
   for (size_t i = 0; i < ir->count; i++) order[i] = scheduled[i].number;
   for (int space = 0; space < SPACE_COUNT; space++) release(accesses.of[space]);
   release(scheduled);
+  release(form);
   release(chains.before);
   release(chains.is_long);
   return order;
