@@ -39,9 +39,10 @@ static size_t slot_of_weakest(size_t n, const size_t *start, const size_t *colum
 }
 
 /*
- * L below its diagonal without the elements that are 0, if some constraints are: most contacts of a heap are open. The
- * numbers of a list follow the elements: of rows in use, these rows, where each row of L begins, and the columns of its
- * elements. Without such constraints no row is in use, and L is not packed.
+ * The rows in use: those of coordinates, and of constraints whose row of K is not 0. If there are others, as most
+ * contacts of a heap are open, L below its diagonal is packed: without the elements that are 0. A list follows the
+ * packed elements. It has the number of rows in use, these rows, and 1 if L is packed. Then come the number with which
+ * each packed row begins, and the columns of the elements.
  */
 struct Packed {
   size_t n;
@@ -69,55 +70,58 @@ static size_t used_count(const struct Packed *packed) {
   return listed(packed, 0);
 }
 
-static bool is_packed(const struct Packed *packed) {
-  return used_count(packed) > 0;
-}
-
-/* Returns a row in use: of a coordinate, or of a constraint whose row of K is not 0. */
 static size_t used_row(const struct Packed *packed, size_t i) {
   return listed(packed, 1 + i);
 }
 
+static bool is_packed(const struct Packed *packed) {
+  return listed(packed, 1 + packed->n) == 1;
+}
+
 static size_t packed_start(const struct Packed *packed, size_t row) {
-  return listed(packed, 1 + packed->n + row);
+  return listed(packed, 2 + packed->n + row);
 }
 
 static size_t packed_column(const struct Packed *packed, size_t k) {
-  return listed(packed, 2 + 2 * packed->n + k);
+  return listed(packed, 3 + 2 * packed->n + k);
 }
 
-static void pack_nothing(const struct Packed *packed) {
+static void begin_list(const struct Packed *packed, bool packs) {
   list(packed, 0, 0);
-  list(packed, 1 + packed->n, 0);
+  list(packed, 1 + packed->n, packs ? 1 : 0);
+  list(packed, 2 + packed->n, 0);
 }
 
-/* Packs the next row of L, and takes it into use. */
-static void pack_row(const struct Packed *packed, const size_t *start, const size_t *column, const Real *m, size_t i) {
-  size_t end = packed_start(packed, i), count = used_count(packed);
+/* Takes the next row into use. */
+static void use_row(const struct Packed *packed, size_t i) {
+  size_t count = used_count(packed);
   list(packed, 1 + count, i);
   list(packed, 0, count + 1);
+}
+
+/* Packs the next row of L. */
+static void pack_row(const struct Packed *packed, const size_t *start, const size_t *column, const Real *m, size_t i) {
+  size_t end = packed_start(packed, i);
   for (size_t k = start[i]; k + 1 < start[i + 1]; k++) {
     Condition is_part = m[k] != 0.0;
     if (!ANYWHERE(is_part)) continue;
     packed->element[end] = m[k];
-    list(packed, 2 + 2 * packed->n + end++, column[k]);
+    list(packed, 3 + 2 * packed->n + end++, column[k]);
   }
-  list(packed, 2 + packed->n + i, end);
+  list(packed, 3 + packed->n + i, end);
 }
 
 /* Packs the next row, that of a constraint without elements of K. */
 static void pack_empty_row(const struct Packed *packed, size_t i) {
-  list(packed, 2 + packed->n + i, packed_start(packed, i));
+  list(packed, 3 + packed->n + i, packed_start(packed, i));
 }
 
 /* Subtracts K x from rest, with the rows of K below n. */
 static void subtract_product(size_t n, const struct Packed *packed, const struct Given *given, const Real *x,
                              Real *rest) {
-  bool has_list = is_packed(packed);
-  size_t count = has_list ? used_count(packed) : n;
-  for (size_t used = 0; used < count; used++) {
-    size_t i = has_list ? used_row(packed, used) : used;
-    if (i >= n) return;
+  size_t count = used_count(packed);
+  for (size_t used = 0; used < count && used_row(packed, used) < n; used++) {
+    size_t i = used_row(packed, used);
     for (size_t k = given->start[i]; k < given->start[i + 1]; k++) {
       size_t j = given->column[k];
       rest[i] -= given->matrix[k] * x[j];
@@ -203,7 +207,10 @@ static Condition has_row(const struct Given *given, size_t i) {
   return sum != 0.0;
 }
 
-/* Returns the offset of null-space vector c, which follows the workspace and the packed rows. */
+/*
+ * Returns the offset of the null-space vector of constraint c of those in use. The vectors follow the workspace and the
+ * packed rows.
+ */
 static size_t slot_of_null_vector(size_t n, const size_t *start, const size_t *column, size_t c) {
   return slot_of_weakest(n, start, column) + 1 + 2 * n + SADDLE_PACKED(start[n], n) + c * (c + 1) / 2;
 }
@@ -224,9 +231,10 @@ static void subtract_component(size_t c, const Real *null_vector, Real *force) {
 }
 
 /*
- * Computes the null-space vector of constraint c, in row i, if it is redundant: L^-T e_i without the forces of norms.
- * It is orthogonalized against those before it, twice because of rounding. It has an element for each constraint up to
- * c. The element of c is 1 and is not stored; its slot holds 1 / |vector|^2, or 0 if there is no vector.
+ * Computes the null-space vector of constraint c of those in use, in row i, if it is redundant: L^-T e_i without the
+ * forces of norms. It is orthogonalized against those before it, twice because of rounding. It has an element for each
+ * constraint in use up to c. The element of c is 1 and is not stored; its slot holds 1 / |vector|^2, or 0 if there is
+ * no vector.
  */
 static void find_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m,
                              size_t i, size_t c, Condition has_row_of_k) {
@@ -237,8 +245,10 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
   if (!ANYWHERE(follows)) return;
   const struct Packed packed = packed_of(n, start, column, m);
   combine(&packed, start, column, m, i, forces);
-  for (size_t row = 0, k = 0; row < i; row++)
+  for (size_t used = 0, k = 0; k < c; used++) {
+    size_t row = used_row(&packed, used);
     if (coordinate[row] < 0) null_vector[k++] = coordinate[row] == SADDLE_NORM ? REAL(0.0) : forces[row];
+  }
   null_vector[c] = REAL(1.0);
   for (size_t j = 0; j < 2 * c; j++)
     subtract_component(j % c, m + slot_of_null_vector(n, start, column, j % c), null_vector);
@@ -249,9 +259,13 @@ static void find_null_vector(size_t n, const size_t *start, const size_t *column
 void saddle_null_vector(size_t n, const size_t *start, const size_t *column, const int *coordinate, Real *m) {
   const struct Given given = given_of(n, start, column, m);
   const struct Packed packed = packed_of(n, start, column, m);
-  pack_nothing(&packed);
-  for (size_t i = 0, c = 0; i < n; i++)
-    if (coordinate[i] < 0) find_null_vector(n, start, column, coordinate, m, i, c++, has_row(&given, i));
+  begin_list(&packed, false);
+  for (size_t i = 0, c = 0; i < n; i++) {
+    Condition takes_part = has_row(&given, i);
+    if (coordinate[i] < 0 && !ANYWHERE(takes_part)) continue;
+    use_row(&packed, i);
+    if (coordinate[i] < 0) find_null_vector(n, start, column, coordinate, m, i, c++, takes_part);
+  }
 }
 
 /* Returns the product of row j of L below its diagonal with spread. */
@@ -309,18 +323,17 @@ size_t saddle_factor(size_t n, const size_t *start, const size_t *column, const 
   const struct Packed packed = packed_of(n, start, column, m);
   *weakest = REAL(1.0);
   memset(spread, 0, n * sizeof *spread);
-  pack_nothing(&packed);
   bool packs = is_to_pack(n, coordinate, &given);
+  begin_list(&packed, packs);
   for (size_t i = 0, c = 0; i < n; i++) {
     size_t last = start[i + 1] - 1;
     Condition takes_part = has_row(&given, i);
     if (coordinate[i] < 0 && !ANYWHERE(takes_part)) {
       m[last] = REAL(-INFINITY);
-      m[slot_of_null_vector(n, start, column, c) + c] = REAL(0.0);
       if (packs) pack_empty_row(&packed, i);
-      c++;
       continue;
     }
+    use_row(&packed, i);
     eliminate_row(&packed, start, column, m, &given, i, spread);
     Real diagonal = m[last], pivot = diagonal, delassus = REAL(0.0);
     for (size_t k = start[i]; k < last; k++) {
@@ -364,13 +377,14 @@ void saddle_solve(size_t n, const size_t *start, const size_t *column, const Rea
 /* Subtracts from the forces in x their parts along all null-space vectors. */
 static void shorten_forces(size_t n, const size_t *start, const size_t *column, const int *coordinate, const Real *m,
                            Real *x) {
+  const struct Packed packed = packed_of(n, start, column, m);
   Real *force = x + n;
-  size_t count = 0;
-  for (size_t i = 0; i < n; i++)
-    if (coordinate[i] < 0) force[count++] = x[i];
+  size_t count = 0, used = used_count(&packed);
+  for (size_t k = 0; k < used; k++)
+    if (coordinate[used_row(&packed, k)] < 0) force[count++] = x[used_row(&packed, k)];
   for (size_t c = 0; c < count; c++) subtract_component(c, m + slot_of_null_vector(n, start, column, c), force);
-  for (size_t i = n; i-- > 0;)
-    if (coordinate[i] < 0) x[i] = force[--count];
+  while (used-- > 0)
+    if (coordinate[used_row(&packed, used)] < 0) x[used_row(&packed, used)] = force[--count];
 }
 
 /* Corrects the forces in x so that they have the same J^T F as others. */
@@ -392,12 +406,14 @@ static void restore_load(size_t n, const size_t *start, const size_t *column, co
 
 static bool has_null_vectors(size_t n, const size_t *start, const size_t *column, const int *coordinate,
                              const Real *m) {
+  const struct Packed packed = packed_of(n, start, column, m);
+  size_t count = used_count(&packed);
   bool has = false;
-  for (size_t i = 0, c = 0; i < n; i++) {
-    if (coordinate[i] >= 0) continue;
-    has |= ANYWHERE(m[slot_of_null_vector(n, start, column, c) + c] > 0.0);
-    c++;
-  }
+  for (size_t k = 0, c = 0; k < count && !has; k++)
+    if (coordinate[used_row(&packed, k)] < 0) {
+      has = ANYWHERE(m[slot_of_null_vector(n, start, column, c) + c] > 0.0);
+      c++;
+    }
   return has;
 }
 
