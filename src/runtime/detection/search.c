@@ -56,12 +56,12 @@ struct Search {
   double *state, *rounded; /* state_count each: workspace */
   double *values;          /* one for each indicator */
   double *samples;         /* CHEBYSHEV_NODES rows of values */
-  double *projected;       /* CHEBYSHEV_NODES rows of values at projected states, if has_projected */
+  double *projected;       /* CHEBYSHEV_NODES rows of values at projected states, where is_projected[node] */
   double *exact;           /* one for each indicator: values at the start */
   double *error_bound;     /* rounding error bounds of the indicators */
   int intervals;           /* number that may still be examined */
   bool is_exact;           /* times are found to rounding; else times before them */
-  bool has_projected;
+  bool is_projected[CHEBYSHEV_NODES];
   bool projects;    /* project states, so that indicators held at 0 by constraints stay 0 */
   double departure; /* sign of the last indicator that left 0 */
   double floor;     /* value to which the present indicator may fall without an event */
@@ -401,20 +401,20 @@ static bool may_be_constrained(const struct Search *search, size_t indicator) {
   return !is_gap && may_stay_at_zero(search, indicator);
 }
 
-/* Returns the values at projected states, which are computed for all indicators at once. */
-static const double *projected_samples(struct Search *search, double from, double to) {
+/* Returns the value of an indicator at the projected state of a node. Those of all indicators are computed at once. */
+static double projected_sample(struct Search *search, size_t indicator, double from, double to, int node) {
+  double *row = search->projected + (size_t)node * indicator_count(lagrangian.switches);
   search->projects = true;
-  for (size_t k = 0; k < CHEBYSHEV_NODES && !search->has_projected; k++)
-    sample(search, chebyshev_time(from, to, (int)k), search->projected + k * indicator_count(lagrangian.switches));
-  search->has_projected = true;
-  return search->projected;
+  if (!search->is_projected[node]) sample(search, chebyshev_time(from, to, node), row);
+  search->is_projected[node] = true;
+  return row[indicator];
 }
 
 /* Sets the samples of one indicator to those at projected states. */
 static void project_samples(struct Search *search, size_t indicator, double from, double to) {
-  const double *projected = projected_samples(search, from, to);
   size_t count = indicator_count(lagrangian.switches);
-  for (size_t i = indicator; i < CHEBYSHEV_NODES * count; i += count) search->samples[i] = projected[i];
+  for (int node = 0; node < CHEBYSHEV_NODES; node++)
+    search->samples[(size_t)node * count + indicator] = projected_sample(search, indicator, from, to, node);
 }
 
 /*
@@ -422,12 +422,10 @@ static void project_samples(struct Search *search, size_t indicator, double from
  * An example is a table that stands on three of its legs, and touches with the fourth.
  */
 static bool keeps_touching(struct Search *search, size_t indicator, double from, double to) {
-  double error_bound = search->error_bound[indicator];
-  size_t count = indicator_count(lagrangian.switches);
   if (!is_of_gap(search, indicator) || !may_stay_at_zero(search, indicator)) return false;
-  const double *projected = projected_samples(search, from, to);
   bool keeps = true;
-  for (size_t i = indicator; i < CHEBYSHEV_NODES * count; i += count) keeps &= fabs(projected[i]) <= error_bound;
+  for (int node = 0; node < CHEBYSHEV_NODES && keeps; node++)
+    keeps = fabs(projected_sample(search, indicator, from, to, node)) <= search->error_bound[indicator];
   return keeps;
 }
 
