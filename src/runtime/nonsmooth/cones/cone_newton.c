@@ -139,17 +139,22 @@ static void exchange(double *one, double *other) {
  */
 static double take_pivot(const struct ConeNewton *newton, size_t k) {
   size_t n = newton->n, row = k, column = k;
-  for (size_t i = k; i < n; i++)
-    for (size_t j = k; j < n; j++)
-      if (fabs(slope_row(newton, i)[j]) > fabs(slope_row(newton, row)[column])) {
-        row = i;
-        column = j;
-      }
+  double largest = 0.0;
+  for (size_t i = k; i < n; i++) {
+    const double *slope = slope_row(newton, i);
+    for (size_t j = k; j < n; j++) {
+      double size = fabs(slope[j]);
+      if (!(size > largest)) continue;
+      largest = size;
+      row = i;
+      column = j;
+    }
+  }
   for (size_t j = 0; j < n && row != k; j++) exchange(&slope_row(newton, row)[j], &slope_row(newton, k)[j]);
   for (size_t i = 0; i < n && column != k; i++) exchange(&slope_row(newton, i)[column], &slope_row(newton, i)[k]);
   exchange(&newton->column[column], &newton->column[k]);
   exchange(&newton->miss[row], &newton->miss[k]);
-  return fabs(slope_row(newton, k)[k]);
+  return largest;
 }
 
 /* Finds the Newton step by elimination with complete pivoting; components that are not determined are 0. */
