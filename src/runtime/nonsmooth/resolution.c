@@ -178,6 +178,7 @@ bool resolution_evaluate(struct Resolution *resolution) {
   for (size_t i = 0; i < resolution->switches->friction_count; i++)
     resolution->force_error_bound[i] = factor * fabs(resolution->force_error_bound[i] - holding_force(resolution, i));
   take_rounding_bounds(resolution);
+  resolution->tolerances = tolerances_of(resolution);
   resolution->is_evaluated = true;
   for (size_t i = 0; i < resolution->switches->contact_count; i++)
     measure_velocity(resolution, contact_slot(resolution->switches, i, CONTACT_RATE));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "instance/event_laws.h"
+#include "nonsmooth/tolerances.h"
 
 /*
  * FORCED_OPEN: the contact pulled, or an event opened it. FORCED_CLOSED: by the solution for all forces at rest.
@@ -19,7 +20,7 @@ enum Part { LEFT_OUT, TAKES_PART, IS_OVERCOME, IS_SLOW, WAS_OPEN };
 
 /*
  * The state of an event resolution: values and rounding error bounds at the present modes and state, and its history.
- * The arrays are parts of one workspace; value and error_bound are valid if is_evaluated.
+ * The arrays are parts of one workspace; value, error_bound and tolerances are valid if is_evaluated.
  */
 struct Resolution {
   struct Instance *instance;
@@ -27,7 +28,8 @@ struct Resolution {
   double time;
   double *state;
   enum Occasion occasion;
-  size_t indicator;            /* of the event, for AT_EVENT */
+  size_t indicator; /* of the event, for AT_EVENT */
+  struct Tolerances tolerances;
   double *value, *error_bound; /* value[] of the switch table, and its rounding error bounds */
   double *other_error_bound;   /* rounding error bounds by the second pattern, at the start of the event */
   double *force_error_bound;   /* rounding error bound of the force of each friction's constraint */
@@ -61,7 +63,7 @@ struct Resolution {
   bool lags;                              /* frictions have switched, and velocities were not projected since */
   bool came_to_rest;                      /* contacts came to rest in their last round */
   bool keeps_accelerations;               /* evaluations use those of the last one */
-  bool is_evaluated;                      /* value[] and error_bound are valid */
+  bool is_evaluated;                      /* value[], error_bound and tolerances are valid */
   bool has_rested, has_left_rest;         /* a velocity has come to rest, or has left it */
   bool is_departure;                      /* the indicator, of a branch, was at rest at 0 until the event */
   bool is_beside_departure;               /* another one has left 0 at this time, in the event before */

@@ -4,6 +4,7 @@
 
 #include "evaluation/evaluate.h"
 #include "nonsmooth/continuity.h"
+#include "nonsmooth/resolution.h"
 
 struct Tolerances tolerances_of(const struct Resolution *resolution) {
   bool is_exchange = resolution->occasion == IN_EXCHANGE;
@@ -21,5 +22,5 @@ struct Tolerances tolerances_of(const struct Resolution *resolution) {
 
 double rounded_acceleration_of_gap(const struct Resolution *resolution, size_t contact) {
   double bound = resolution->error_bound[contact_slot(resolution->switches, contact, CONTACT_ACCELERATION)];
-  return fmax(1e3 * bound, tolerances_of(resolution).acceleration);
+  return fmax(1e3 * bound, resolution->tolerances.acceleration);
 }

@@ -1,7 +1,9 @@
 /* Tolerances of gaps and speeds at contacts in an event resolution. */
 #pragma once
 
-#include "nonsmooth/resolution.h"
+#include <stddef.h>
+
+struct Resolution;
 
 /*
  * L is the largest coordinate of the present state, V the largest velocity, each at least its nominal value. Where an

@@ -289,7 +289,7 @@ bool contact_impulses_create(struct Resolution *resolution, struct ContactImpuls
                                        .friction_count = frictions,
                                        .count = contacts + frictions,
                                        .deciding_count = contacts,
-                                       .uncertain = tolerances_of(resolution).uncertain};
+                                       .uncertain = resolution->tolerances.uncertain};
   impulses->block = scratch_take(resolution->instance, SCRATCH_IMPULSES, lay_out_impulses(impulses, NULL));
   if (impulses->block == NULL) {
     solver_is_out_of_memory(resolution->instance);

@@ -45,7 +45,7 @@ static bool is_overtaken(const struct Resolution *resolution, size_t contact) {
   if (resolution->occasion != IN_EXCHANGE || has_jumped || !(value[CONTACT_GAP] < -error_bound[CONTACT_GAP]))
     return false;
   double height = 0.5 * value[CONTACT_RATE] * value[CONTACT_RATE] / -value[CONTACT_ACCELERATION];
-  return value[CONTACT_RATE] > error_bound[CONTACT_RATE] && height <= tolerances_of(resolution).rounded;
+  return value[CONTACT_RATE] > error_bound[CONTACT_RATE] && height <= resolution->tolerances.rounded;
 }
 
 /*
@@ -187,7 +187,7 @@ static const char *let_rest(struct Resolution *resolution) {
 
 /* Opens closed contacts that were moved apart. True if any. */
 static bool open_lifted(struct Resolution *resolution) {
-  double drift = tolerances_of(resolution).drift;
+  double drift = resolution->tolerances.drift;
   bool opens = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
     if (!contact_is_closed(resolution, i) || contact_value(resolution, i, CONTACT_GAP) <= drift) continue;
@@ -200,7 +200,7 @@ static bool open_lifted(struct Resolution *resolution) {
 /* Opens closed contacts whose gap opens faster than errors, at a switch such as an edge or by an event. True if any. */
 static bool open_parting(struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  double kink = tolerances_of(resolution).kink;
+  double kink = resolution->tolerances.kink;
   bool opens = false;
   for (size_t i = 0; i < switches->contact_count; i++) {
     size_t slot = contact_slot(switches, i, CONTACT_RATE);
@@ -218,7 +218,7 @@ static bool part(struct Resolution *resolution) {
   open_lifted(resolution);
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = contact_value(resolution, i, CONTACT_GAP);
-    if (contact_is_closed(resolution, i) || gap >= -tolerances_of(resolution).drift) continue;
+    if (contact_is_closed(resolution, i) || gap >= -resolution->tolerances.drift) continue;
     log_message(
         resolution->instance, STATUS_DISCARD,
         "time %g: after a parameter, an input or a state was set, the contact '%s' is penetrated: its gap is %g; "
@@ -239,7 +239,7 @@ static bool has_to_lift(const struct Resolution *resolution, size_t contact) {
   size_t gap = contact_slot(resolution->switches, contact, CONTACT_GAP), rate = gap + CONTACT_RATE;
   const double *value = resolution->value, *error_bound = resolution->error_bound;
   if (contact_is_closed(resolution, contact) || !(value[gap] < -error_bound[gap])) return false;
-  if (!(value[gap] >= -tolerances_of(resolution).drift)) return false;
+  if (!(value[gap] >= -resolution->tolerances.drift)) return false;
   bool has_stopped = resolution->jumped && value[rate] <= error_bound[rate];
   bool is_stuck = is_hit(resolution, contact_indicator(resolution->switches, contact)) && value[rate] >= 0.0;
   bool comes_again = (has_stopped || is_stuck) && value[gap] < -found_again * error_bound[gap];
@@ -267,7 +267,7 @@ static bool lift(struct Resolution *resolution, bool *lifts) {
 static size_t find_moved_fixed(const struct Resolution *resolution) {
   const bool *is_fixed = lagrangian.constraints.coordinate_is_fixed;
   size_t found = lagrangian.coordinate_count;
-  double most = tolerances_of(resolution).penetration; /* here in units of its scale */
+  double most = resolution->tolerances.penetration; /* here in units of its scale */
   for (size_t i = 0; i < lagrangian.coordinate_count && is_fixed != NULL; i++) {
     double move = fabs(resolution->correction[i]) / scale_of(resolution->state, i);
     if (!is_fixed[i] || !(move > most)) continue;
@@ -287,7 +287,7 @@ static bool undo_move_of_fixed(struct Resolution *resolution) {
 /* True if the penetration of a contact may come from rounded start values. */
 static bool is_rounded(const struct Resolution *resolution, size_t contact) {
   double gap = contact_value(resolution, contact, CONTACT_GAP);
-  const struct Tolerances tolerances = tolerances_of(resolution);
+  const struct Tolerances tolerances = resolution->tolerances;
   return gap < -tolerances.penetration && gap >= -tolerances.rounded;
 }
 
@@ -415,7 +415,7 @@ static const char *check_gaps(const struct Resolution *resolution) {
   const char *problem = check_values(resolution);
   if (problem != NULL) return problem;
   bool starts = resolution->occasion == AT_START, moved = resolution->moved;
-  const struct Tolerances tolerances = tolerances_of(resolution);
+  const struct Tolerances tolerances = resolution->tolerances;
   double allowed = starts || moved ? tolerances.penetration : tolerances.drift;
   for (size_t i = 0; i < switches->contact_count; i++) {
     double gap = contact_value(resolution, i, CONTACT_GAP);

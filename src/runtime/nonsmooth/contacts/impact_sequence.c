@@ -43,7 +43,7 @@ static bool is_error_of_solver(const struct Resolution *resolution, size_t conta
   if (resolution->occasion != AT_EVENT || resolution->jumped || may_change_gaps(resolution)) return false;
   bool is_other = !is_hit(resolution, contact_indicator(resolution->switches, contact));
   return first_mode_of(resolution, resolution->switches->contacts[contact].mode) > 0.0 ||
-         (is_other && -contact_value(resolution, contact, CONTACT_RATE) <= tolerances_of(resolution).rest);
+         (is_other && -contact_value(resolution, contact, CONTACT_RATE) <= resolution->tolerances.rest);
 }
 
 /*
@@ -111,7 +111,7 @@ static bool passes_on(const struct Resolution *resolution, size_t contact) {
 
 /* True if a contact still closes after an impact of all that touch, not only by uncertain directions of the gaps. */
 static bool closes_clearly(const struct Resolution *resolution, size_t contact) {
-  return contact_value(resolution, contact, CONTACT_RATE) < -tolerances_of(resolution).uncertain;
+  return contact_value(resolution, contact, CONTACT_RATE) < -resolution->tolerances.uncertain;
 }
 
 static void open_all(struct Resolution *resolution) {

@@ -138,7 +138,7 @@ static void report_impact(struct Resolution *resolution) {
 static bool is_hit_at_rest(const struct Resolution *resolution, const struct ContactImpulses *impulses) {
   double fastest = 0.0;
   for (size_t i = 0; i < impulses->count; i++) fastest = fmax(fastest, fabs(impulses->rate[i]));
-  return fastest <= tolerances_of(resolution).rest;
+  return fastest <= resolution->tolerances.rest;
 }
 
 /* Warns at most once an instance that the impact has several outcomes. */

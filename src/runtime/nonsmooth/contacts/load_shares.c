@@ -24,7 +24,7 @@ static bool sticks_sideways(const struct Resolution *resolution, size_t contact,
 
 /* Lets open contacts take part that touch at rest, and do not part. True if there are any beside a closed contact. */
 static bool find_idle(struct Resolution *resolution) {
-  const struct Tolerances tolerances = tolerances_of(resolution);
+  const struct Tolerances tolerances = resolution->tolerances;
   bool has_closed = false, is_idle = false;
   for (size_t i = 0; i < resolution->switches->contact_count; i++) {
     bool is_closed = contact_is_closed(resolution, i);

@@ -69,12 +69,12 @@ static void take_direction(const struct Resolution *resolution, size_t friction,
 
 /* True if a velocity is larger than a kink of the constraints or an error of the method can cause. */
 static bool is_off_zero(const struct Resolution *resolution, double velocity) {
-  return fabs(velocity) > tolerances_of(resolution).kink;
+  return fabs(velocity) > resolution->tolerances.kink;
 }
 
 /* True if a velocity at 0 has a rate, beyond its rounding error and that of rates which constraints hold at 0. */
 static bool leaves_rest(const struct Resolution *resolution, double rate, double error_bound) {
-  return fabs(rate) > fmax(error_bound, tolerances_of(resolution).acceleration);
+  return fabs(rate) > fmax(error_bound, resolution->tolerances.acceleration);
 }
 
 static struct FrictionState friction_state(const struct Resolution *resolution, size_t friction) {
@@ -143,7 +143,7 @@ static double mode_without_hold(const struct Resolution *resolution, const struc
   bool is_rounding = fabs(state->force) <= least_certainty * state->error_bound_of_force;
   bool has_slid = !state->is_first && state->began != 0.0;
   double most = continues ? state->error_bound_of_force : state->force;
-  if (continues && is_determined && (has_slid || fabs(state->rate) > tolerances_of(resolution).acceleration))
+  if (continues && is_determined && (has_slid || fabs(state->rate) > resolution->tolerances.acceleration))
     return state->rate > 0.0 ? 1.0 : -1.0;
   return has_slid && state->is_hit && is_rounding && most > state->stiction ? -state->began : 0.0;
 }
@@ -362,7 +362,7 @@ bool frictions_find_constrained(struct Resolution *resolution, size_t friction, 
  */
 bool frictions_report(struct Resolution *resolution, bool *again) {
   const struct SwitchTable *switches = resolution->switches;
-  double slowest = tolerances_of(resolution).rest;
+  double slowest = resolution->tolerances.rest;
   *again = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
     const struct FrictionMetadata *metadata = &switches->frictions[i];
@@ -499,7 +499,7 @@ bool frictions_explain_jam(struct Resolution *resolution, size_t branch) {
     constraint = pair % lagrangian.constraints.count;
     jams = mode_of(resolution, switches->frictions[friction].mode) != 0.0 &&
            follows_from(resolution, friction, branch, constraint) &&
-           sliding_speed(resolution, friction) > tolerances_of(resolution).rest;
+           sliding_speed(resolution, friction) > resolution->tolerances.rest;
   }
   if (!jams || (branch == switches->branch_count && !is_freed_by_sticking(resolution, friction))) return false;
   log_message(resolution->instance, resolution_status(resolution),

@@ -156,7 +156,7 @@ bool plane_is_unheld(const struct Resolution *resolution, const struct PlaneStat
   double bound = fmax(resolution->error_bound[slot], resolution->error_bound[slot + FRICTION_VALUES]);
   bound = fmax(bound, resolution->least_acceleration);
   return state->mode == PLANE_STICKS && has_rate(resolution, state, bound) &&
-         has_rate(resolution, state, tolerances_of(resolution).acceleration);
+         has_rate(resolution, state, resolution->tolerances.acceleration);
 }
 
 bool plane_is_lost(const struct Resolution *resolution, const struct PlaneState *state) {

@@ -162,7 +162,7 @@ static bool is_impulsive(struct ShortStep *step) {
  */
 static void report_ended_slip(const struct ShortStep *step) {
   const struct Resolution *resolution = step->resolution;
-  if (resolution->instance->reported_ended_slip || step->slip <= tolerances_of(resolution).rest) return;
+  if (resolution->instance->reported_ended_slip || step->slip <= resolution->tolerances.rest) return;
   size_t most = find_most(&step->impulses, step->impulse);
   resolution->instance->reported_ended_slip = true;
   log_message(resolution->instance, STATUS_WARNING,

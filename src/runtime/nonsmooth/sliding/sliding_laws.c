@@ -71,7 +71,7 @@ static void report_others(const struct Resolution *resolution, const struct Rest
 
 static bool any_begins_to_slide(const struct Resolution *resolution) {
   const struct SwitchTable *switches = resolution->switches;
-  double slowest = tolerances_of(resolution).rest;
+  double slowest = resolution->tolerances.rest;
   bool begins = false;
   for (size_t i = 0; i < switches->friction_count; i++) {
     if (friction_sticks(resolution, i) || !(sliding_speed(resolution, i) <= slowest)) continue;
