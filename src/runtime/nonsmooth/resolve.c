@@ -260,71 +260,77 @@ static void count_kink(struct Instance *instance, bool *changed) {
   *changed = true;
 }
 
+/* Notes that an indicator leaves 0, by its event. */
+static void note_departure(struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
+  size_t branch = resolution->indicator;
+  resolution->is_departure = resolution->occasion == AT_EVENT && branch < switches->branch_count &&
+                             mode_of(resolution, switches->branches[branch].mode) == 0.0;
+  resolution->is_beside_departure = resolution->time == resolution->instance->departure_time;
+  if (resolution->is_departure) resolution->instance->departure_time = resolution->time;
+}
+
+/* Resolves the event, and sets *changed. Returns NULL, or the reason why the motion cannot continue. */
+static const char *resolve_event(struct Resolution *resolution, bool *changed) {
+  struct Instance *instance = resolution->instance;
+  note_departure(resolution);
+  memcpy(resolution->first_modes, modes_of(instance), resolution->switches->mode_count * sizeof(double));
+  if (branches_pass_kink(resolution)) {
+    count_kink(instance, changed);
+    return NULL;
+  }
+  const char *problem = begin_resolution(resolution);
+  if (problem == NULL) problem = resolve_in_rounds(resolution);
+  resolution->changed = resolution_has_changed(resolution);
+  bool is_missing = problem == no_accelerations || problem == no_first_accelerations;
+  bool is_explained = is_missing && explain_jam(resolution);
+  if (problem == no_accelerations && !is_explained) report_missing_for_frictions(resolution);
+  if (problem == NULL) problem = branches_check(resolution);
+  if (problem == NULL) problem = push(resolution);
+  if (problem == NULL) problem = continuity_check(resolution);
+  if (problem == NULL) problem = check_laws(resolution);
+  if (problem == NULL) problem = keep_on_constraints(resolution);
+  if (problem == NULL) problem = continuity_check_corner(resolution);
+  if (problem == NULL) set_resting_velocities(resolution);
+  if (resolution->changed && resolution->occasion != AT_START) {
+    instance->fmu_state->statistics[STATISTIC_EVENTS]++;
+    if (problem == NULL) log_switches(resolution);
+  }
+  instance->lifts = problem == NULL && lifts(resolution);
+  *changed = resolution->changed;
+  return problem;
+}
+
 const char *resolve(struct Instance *instance, double time, double *state, enum Occasion occasion, size_t indicator,
                     bool *changed) {
   struct Resolution resolution = resolution_at(instance, time, state, occasion);
   resolution.indicator = indicator;
-  resolution.is_departure = occasion == AT_EVENT && indicator < resolution.switches->branch_count &&
-                            mode_of(&resolution, resolution.switches->branches[indicator].mode) == 0.0;
-  resolution.is_beside_departure = time == instance->departure_time;
-  if (resolution.is_departure) instance->departure_time = time;
-  if (branches_pass_kink(&resolution)) {
-    count_kink(instance, changed);
-    return NULL;
-  }
-  memcpy(resolution.first_modes, modes_of(instance), resolution.switches->mode_count * sizeof(double));
-  const char *problem = begin_resolution(&resolution);
-  if (problem == NULL) problem = resolve_in_rounds(&resolution);
-  resolution.changed = resolution_has_changed(&resolution);
-  bool is_missing = problem == no_accelerations || problem == no_first_accelerations;
-  bool is_explained = is_missing && explain_jam(&resolution);
-  if (problem == no_accelerations && !is_explained) report_missing_for_frictions(&resolution);
-  if (problem == NULL) problem = branches_check(&resolution);
-  if (problem == NULL) problem = push(&resolution);
-  if (problem == NULL) problem = continuity_check(&resolution);
-  if (problem == NULL) problem = check_laws(&resolution);
-  if (problem == NULL) problem = keep_on_constraints(&resolution);
-  if (problem == NULL) problem = continuity_check_corner(&resolution);
-  if (problem == NULL) set_resting_velocities(&resolution);
-  if (resolution.changed && occasion != AT_START) {
-    instance->fmu_state->statistics[STATISTIC_EVENTS]++;
-    if (problem == NULL) log_switches(&resolution);
-  }
-  instance->lifts = problem == NULL && lifts(&resolution);
-  *changed = resolution.changed;
-  return problem;
+  return resolve_event(&resolution, changed);
 }
 
-/* True if another constraint of a contact or friction is active than with these modes. */
-static bool other_constraints_are_active(const struct Instance *instance, const double *mode) {
-  const struct SwitchTable *switches = lagrangian.switches;
-  const double *before = mode - (lagrangian.parameter_count - switches->mode_count);
+/* True if another constraint of a contact or friction is active than at the start of the event. */
+static bool other_constraints_are_active(const struct Resolution *resolution) {
+  const struct SwitchTable *switches = resolution->switches;
   bool other = false;
   for (size_t i = 0; i < switches->contact_count; i++)
-    other |= contact_holds(instance, i) != (before[switches->contacts[i].mode] > 0.0);
+    other |= contact_holds(resolution->instance, i) != (first_mode_of(resolution, switches->contacts[i].mode) > 0.0);
   for (size_t i = 0; i < switches->friction_count; i++)
-    other |= friction_holds(instance, i) != (before[switches->frictions[i].mode] == 0.0);
+    other |= friction_holds(resolution->instance, i) != (first_mode_of(resolution, switches->frictions[i].mode) == 0.0);
   return other;
 }
 
 bool resolve_or_restore(struct Instance *instance, double time, double *state, bool *switches) {
-  size_t modes = lagrangian.switches->mode_count * sizeof(double);
-  double *mode = modes_of(instance), *before = scratch_take(instance, SCRATCH_MODES, modes);
+  struct Resolution resolution = resolution_at(instance, time, state, AT_CHANGE);
   struct DeferredLog deferred;
   bool changed;
-  *switches = false;
-  if (before == NULL) return solver_is_out_of_memory(instance);
-  memcpy(before, mode, modes);
   log_defer(instance, &deferred);
-  bool agrees = resolve(instance, time, state, AT_CHANGE, 0, &changed) == NULL;
+  bool agrees = resolve_event(&resolution, &changed) == NULL;
   log_release(instance, &deferred);
-  if (agrees) {
-    log_write_deferred(instance, &deferred);
-    *switches = other_constraints_are_active(instance, before);
-  } else {
-    memcpy(mode, before, modes);
+  *switches = agrees && other_constraints_are_active(&resolution);
+  if (agrees) log_write_deferred(instance, &deferred);
+  else {
+    memcpy(modes_of(instance), resolution.first_modes, resolution.switches->mode_count * sizeof(double));
     instance->parameter_constants_are_stale = true;
   }
-  scratch_return(instance, SCRATCH_MODES);
   return agrees;
 }
