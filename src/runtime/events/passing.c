@@ -30,6 +30,8 @@
 
 /* Consecutive events within rounding after which the motion stops, beyond one of each indicator. */
 enum { EVENT_LIMIT = 30 };
+/* Events of one friction in a plane, more than of all others, while it does not slide. In slow steps, time steps pass more. */
+enum { CREEPING_LIMIT = 20 };
 /* Length of the name of an indicator in messages. */
 enum { NAME_SIZE = 200 };
 /* Search intervals in a communication step that may hide a zero, after which the motion stops. */
@@ -209,6 +211,25 @@ static bool is_bounce(const struct Instance *instance, size_t indicator) {
   return is_of_contact(indicator) && !indicator_is_force(instance, indicator);
 }
 
+/*
+ * Counts an event of a friction in a plane that sticks, creeps, or is about to slip. A majority vote finds the one of
+ * most events. Where constraints determine no unique forces, those at rest may set a friction in motion, and those in
+ * motion stop it (Zeno behaviour).
+ */
+static void count_creeping(const struct Instance *instance, size_t indicator, struct EventProgress *progress) {
+  const struct SwitchTable *switches = lagrangian.switches;
+  size_t friction = indicator - friction_indicator(switches, 0), plane;
+  if (indicator < friction_indicator(switches, 0) || !is_in_plane(switches, friction)) return;
+  plane = plane_of(switches, friction);
+  bool slides = instance->parameter[switches->frictions[switches->planes[plane].along].mode] == PLANE_SLIDES;
+  if (plane == progress->creeping) progress->creeping_events = slides ? 0 : progress->creeping_events + 1;
+  else if (progress->creeping_events > 0) progress->creeping_events -= slides ? 0 : 1;
+  else if (!slides) {
+    progress->creeping = plane;
+    progress->creeping_events = 1;
+  }
+}
+
 /* Updates the progress of the step by an event. */
 static void count_event(const struct Instance *instance, const struct CommunicationStep *step, double time,
                         size_t indicator, struct EventProgress *progress) {
@@ -219,6 +240,7 @@ static void count_event(const struct Instance *instance, const struct Communicat
                           time - (step->start + progress->last) <= close_share * fabs(time);
   progress->close_events = is_close ? progress->close_events + 1 : 0;
   progress->close_events_at_rest = is_close_to_last ? progress->close_events_at_rest + 1 : 0;
+  count_creeping(instance, indicator, progress);
   progress->distance = since_last;
   progress->last = time - step->start;
   progress->count++;
@@ -394,6 +416,11 @@ static bool take_event_state(struct Instance *instance, double time) {
   return solver->interpolate(instance, time, instance->event_state);
 }
 
+/* True if a friction begins to creep and stops endlessly, and its events take long. */
+static bool creeps_on(const struct EventProgress *progress) {
+  return progress->is_slow && progress->creeping_events > CREEPING_LIMIT;
+}
+
 /* True if there are more events within rounding than indicators that may all switch at one time. */
 static bool is_endless(int close_events) {
   return close_events >= EVENT_LIMIT + (int)indicator_count(lagrangian.switches);
@@ -489,6 +516,7 @@ const char *events_pass(struct Instance *instance, struct CommunicationStep *ste
   if (!is_found) return NULL;
   if (isnan(time)) return pass_inseparable(instance, step, indicator, progress);
   count_event(instance, step, time, indicator, progress);
+  if (creeps_on(progress) && step_over(instance, step, time, time, progress)) return NULL;
   if (is_endless(progress->close_events) || progress->close_events_at_rest >= EVENT_LIMIT)
     return step_over(instance, step, time, time, progress) ? NULL : report_zeno(instance, step, progress, indicator);
   if (instance->stops_at_events) instance->fmu_state->close_events = progress->close_events;

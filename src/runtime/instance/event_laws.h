@@ -17,8 +17,11 @@ struct CommunicationStep;
 struct EventProgress {
   double searched;  /* time up to which all events have been handled, in s */
   bool is_lost;     /* an event after it cannot be resolved */
+  bool is_slow;     /* the step has taken a good part of a second; the warning was logged */
   int close_events; /* Zeno counter: consecutive events that time or the indicator's rounding does not separate */
   int close_events_at_rest; /* Zeno counter: consecutive close events of one indicator at rest */
+  size_t creeping;          /* friction of most events of frictions in planes that do not slide */
+  int creeping_events;      /* Zeno counter: its events, less those of other such frictions, since it slid */
   double last;              /* last event, in s from the start of the step; 0 for none */
   double distance;          /* between the last two events, in s; 0 for none */
   long count;               /* events in the step */

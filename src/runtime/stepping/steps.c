@@ -96,7 +96,6 @@ static void warn_of_slowness(const struct Instance *instance, const struct Commu
 struct StepProgress {
   struct EventProgress progress;
   int64_t before[STATISTIC_COUNT]; /* the statistics at its start */
-  bool is_reported;                /* the warning was logged */
   double allowed;                  /* operations beyond the limit, after events were passed by time steps */
   int resting;                     /* consecutive solver steps too short to change the time */
   bool ends_at_event;              /* the motion cannot continue after an event */
@@ -127,8 +126,8 @@ static const char *check_cost(struct Instance *instance, const struct Communicat
     lagrangian.event_laws->explain(instance, step, &course->progress);
   if (problem != NULL) return problem;
   bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
-  if (is_slow && !course->is_reported) warn_of_slowness(instance, step, work);
-  course->is_reported |= is_slow;
+  if (is_slow && !course->progress.is_slow) warn_of_slowness(instance, step, work);
+  course->progress.is_slow |= is_slow;
   return NULL;
 }
 
