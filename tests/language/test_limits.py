@@ -153,7 +153,7 @@ def heap(count, contact):
 
 
 FINE = {
-    "8 spheres with friction": heap(8, 'restitution="0" friction="0.5"'),
+    **{f"{count} spheres with friction": heap(count, 'restitution="0" friction="0.5"') for count in (8, 20)},
     "30 spheres": heap(30, 'restitution="0"'),
     "negations in a row": '<force coordinate="x">if(' + "not " * 200000 + "x &gt; 0, 1, 2)</force>",
     "a quotient whose division leaves the numbers": '<particle mass="m" y="1/(x+1e200)" x="x"/>',

@@ -69,6 +69,7 @@ static struct NeighbourSet *neighbours_of(size_t count, const struct Position *p
     sets[column].items[sets[column].count++] = row;
   }
   for (size_t i = 0; i < count; i++) sort_sizes(sets[i].items, sets[i].count);
+  release(degree);
   return sets;
 }
 
@@ -82,6 +83,7 @@ static void join(struct NeighbourSet *set, size_t row, const struct NeighbourSet
     while (i < set->count && set->items[i] == next) i++;
     while (j < others->count && others->items[j] == next) j++;
   }
+  release(set->items);
   *set = joined;
 }
 
