@@ -55,7 +55,7 @@ void instance_reset(struct Instance *instance) {
   instance->parameter_constants_are_stale = instance->solver_is_stale = true;
   instance->reported_impossible_start = instance->reported_straight_input = false;
   instance->reported_other_forces = instance->reported_other_impulses = instance->reported_ended_slip = false;
-  instance->reported_time_steps = false;
+  instance->reported_time_steps = instance->reported_slowness = false;
   instance->reported_singularity = 0;
   instance->departure_time = -INFINITY;
 }

@@ -110,6 +110,7 @@ struct Instance {
   bool reported_other_forces;     /* logged since the reset: contact forces are not unique */
   bool reported_other_impulses;   /* logged since the reset: an impact has several outcomes */
   bool reported_time_steps;       /* the same: time steps have passed events */
+  bool reported_slowness;         /* the same: a communication step takes long */
   bool reported_ended_slip;       /* logged since the reset: an impulse has ended a slip without forces */
   bool reported_straight_input;   /* logged since the reset: an input would leave its limits within a step */
   uint64_t reported_singularity;  /* checksum of the snapshot at which missing accelerations were logged */

@@ -81,8 +81,10 @@ static enum StepResult prepare_solver(struct Instance *instance, const struct Co
   return STEP_DONE;
 }
 
-/* Warns early about slow steps. */
-static void warn_of_slowness(const struct Instance *instance, const struct CommunicationStep *step, double work) {
+/* Warns early about slow steps, once an instance. */
+static void warn_of_slowness(struct Instance *instance, const struct CommunicationStep *step, double work) {
+  if (instance->reported_slowness) return;
+  instance->reported_slowness = true;
   log_message(instance, STATUS_WARNING,
               "slow: %s has taken %ld steps from time %.15g to %.15g, and needs to reach %.15g; it stops after %ld, "
               "which maxSteps of <solver> %s",
@@ -117,17 +119,14 @@ static const char *excess(const struct CommunicationStep *step, double work, dou
   return step->count < lagrangian.steps.max_steps ? NULL : too_many_steps;
 }
 
-/* Checks limits of steps and work; warns of slowness once. Returns NULL, or the reason for giving up. */
+/* Checks limits of steps and work; warns of slowness. Returns NULL, or the limit that is exceeded. */
 static const char *check_cost(struct Instance *instance, const struct CommunicationStep *step,
                               struct StepProgress *course) {
   double work = work_in_step(instance, step, course);
   const char *problem = excess(step, work, course->allowed);
-  if (problem != NULL && lagrangian.event_laws != NULL)
-    lagrangian.event_laws->explain(instance, step, &course->progress);
   if (problem != NULL) return problem;
-  bool is_slow = step->count >= SLOW_STEPS || work >= SLOW_WORK;
-  if (is_slow && !course->progress.is_slow) warn_of_slowness(instance, step, work);
-  course->progress.is_slow |= is_slow;
+  course->progress.is_slow |= step->count >= SLOW_STEPS || work >= SLOW_WORK;
+  if (course->progress.is_slow) warn_of_slowness(instance, step, work);
   return NULL;
 }
 
@@ -141,12 +140,18 @@ static const char *pass_barrier(struct Instance *instance, struct CommunicationS
   return problem;
 }
 
-/* Passes events that would take too much work. Returns NULL, or the reason for a failure. */
-static const char *pass_by_time_steps(struct Instance *instance, const struct CommunicationStep *step,
-                                      struct StepProgress *course) {
+/*
+ * Passes events that would take too much work by time steps. Returns NULL, or the limit that is exceeded, after logging
+ * events that have reached it.
+ */
+static const char *pass_excess(struct Instance *instance, const struct CommunicationStep *step,
+                               struct StepProgress *course, const char *problem) {
   const struct EventLaws *laws = lagrangian.event_laws;
+  if (laws == NULL) return problem;
   course->allowed = work_in_step(instance, step, course) - (1.0 - MORE_WORK) * WORK_LIMIT;
-  return laws != NULL && laws->step_over(instance, step, &course->progress) ? NULL : too_much_work;
+  if (problem == too_much_work && laws->step_over(instance, step, &course->progress)) return NULL;
+  laws->explain(instance, step, &course->progress);
+  return problem;
 }
 
 /* Makes one solver step, or passes a zero that the solver cannot reach. Returns NULL, or the reason for a failure. */
@@ -154,8 +159,7 @@ static const char *advance_once(struct Instance *instance, struct CommunicationS
                                 struct StepProgress *course) {
   const struct Span *last = &instance->fmu_state->last_step;
   const char *problem = check_cost(instance, step, course);
-  if (problem == too_much_work) return pass_by_time_steps(instance, step, course);
-  if (problem != NULL) return problem;
+  if (problem != NULL) return pass_excess(instance, step, course, problem);
   struct CommunicationStep near = *step; /* ends sooner if long steps cannot separate the events */
   near.step_limit = course->progress.step_limit;
   if (near.step_limit > 0.0) near.end = fmin(step->end, last->end + near.step_limit);
