@@ -135,6 +135,10 @@ SYSTEMS = {
     **{f"ClampedInPlane{n}": CLAMPED.format(n) for n in (0, 1, 2, 3, 4)},
     **{f"LiftedByPalm{n}": f"""<coordinate name="h" velocity="vh" acceleration="{(n + 1) * (n + 2)}*time^{n}"/><coordinate name="z" velocity="vz"/><particle mass="1" z="z"/><gravity z="-10"/>
       <contact name="table" gap="z"/><contact name="palm" gap="z - h"/>""" for n in (0, 1, 3)},
+    # A wall whose force begins at 0 rubs on a block that slides along it on a ground.
+    "Rubbed": """<coordinate name="x" velocity="vx"/><coordinate name="y" velocity="vy" velocityStart="0.5"/><coordinate name="z" velocity="vz"/>
+      <particle mass="1" x="x" y="y" z="z"/><gravity z="-9.81"/><force coordinate="x">-20*time</force>
+      <contact name="wall" gap="x"/><contact name="ground" gap="z"/><friction name="f" velocity="vy" across="vz" force="0.5*wall.force"/>""",
     "WormAtStop": WORM.format("phi", 0.05),
     "WormAtItsOwnStop": WORM.format("a", 1.5),
 }
@@ -307,6 +311,14 @@ def test_a_clamp_in_a_vertical_plane_moves_off(power, seed):
     way = np.array([cx, cz]) * 2 ** (power + 2) / ((power + 1) * (power + 2))
     expected = np.concatenate([way if holds else np.zeros(2), way])
     assert [rows[name][-1] for name in names] == pytest.approx(expected, abs=10 * tolerance * max(1.0, np.abs(way).max()))
+
+
+@KINDS
+def test_a_wall_whose_force_begins_at_zero(kind):
+    """The wall is closed from the start, without an event: vy = 0.5 - 5 t^2 until the block stops."""
+    stop = 0.1**0.5
+    moved = at_end("Rubbed", "y", kind)
+    assert moved == pytest.approx(0.5 * stop - 5 * stop**3 / 3, abs=1e-7 if kind == "CoSimulation" else 1e-4)
 
 
 @KINDS

@@ -63,6 +63,8 @@ struct PlaneState plane_state(const struct Resolution *resolution, size_t plane)
   state.aside = fabs(c * state.velocity[1] - s * state.velocity[0]);
   state.needed = hypot(state.force[0], state.force[1]);
   state.has_force = switches->rests_on == NULL || state.stiction != 0.0 || state.sliding != 0.0;
+  for (size_t i = 0; i < switches->contact_count && !state.has_force; i++)
+    state.has_force = rests_on(switches, metadata->along, i) && contact_holds(resolution->instance, i);
   double unit = tolerance_of(resolution->instance) * resolution->value[plane_slot(switches, plane)];
   state.small = small_share * unit;
   state.none = no_share * unit;

@@ -11,7 +11,7 @@ struct PlaneState {
   const struct PlaneMetadata *metadata;
   enum PlaneMode mode;
   double speed, stiction, sliding;  /* speed; largest static and kinetic friction force */
-  bool has_force;                   /* false: its contacts have no force, nothing sticks */
+  bool has_force;                   /* false: its contacts are open and have no force, nothing sticks */
   double velocity[2], ahead, aside; /* along and across; components along the slip direction, and aside */
   double rate[2];                   /* rates of the velocities along and across */
   double force[2], needed;          /* force that it carries if it sticks, and its size */
