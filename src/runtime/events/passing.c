@@ -30,7 +30,10 @@
 
 /* Consecutive events within rounding after which the motion stops, beyond one of each indicator. */
 enum { EVENT_LIMIT = 30 };
-/* Events of one friction in a plane, more than of all others, while it does not slide. In slow steps, time steps pass more. */
+/*
+ * Events of one friction in a plane, more than of all others, while it does not slide. In slow steps, time steps pass
+ * more.
+ */
 enum { CREEPING_LIMIT = 20 };
 /* Length of the name of an indicator in messages. */
 enum { NAME_SIZE = 200 };
@@ -218,9 +221,9 @@ static bool is_bounce(const struct Instance *instance, size_t indicator) {
  */
 static void count_creeping(const struct Instance *instance, size_t indicator, struct EventProgress *progress) {
   const struct SwitchTable *switches = lagrangian.switches;
-  size_t friction = indicator - friction_indicator(switches, 0), plane;
+  size_t friction = indicator - friction_indicator(switches, 0);
   if (indicator < friction_indicator(switches, 0) || !is_in_plane(switches, friction)) return;
-  plane = plane_of(switches, friction);
+  size_t plane = plane_of(switches, friction);
   bool slides = instance->parameter[switches->frictions[switches->planes[plane].along].mode] == PLANE_SLIDES;
   if (plane == progress->creeping) progress->creeping_events = slides ? 0 : progress->creeping_events + 1;
   else if (progress->creeping_events > 0) progress->creeping_events -= slides ? 0 : 1;

@@ -3,8 +3,8 @@
  * writes of its operands, and the last writes and reads of the slot that its result overwrites. Instructions of one
  * level are independent, but for chains of sums, and are sorted by opcode, function and spaces into runs. In a run those
  * of one form follow each other, and chains stay in order. Forms, and instructions of one form, keep the order of the
- * function: results that it writes one after another are then equally spaced. One pass and two sorts: O(n log n). SKIP accesses all slots
- * of its region.
+ * function: results that it writes one after another are then equally spaced. One pass and two sorts: O(n log n). SKIP
+ * accesses all slots of its region.
  */
 #include "program/tables/schedule.h"
 
@@ -133,7 +133,7 @@ static int compare(const void *first, const void *second) {
   if (a->spaces != b->spaces) return a->spaces < b->spaces ? -1 : 1;
   if (a->form != b->form) return a->form < b->form ? -1 : 1;
   if (a->chain != b->chain) return a->chain < b->chain ? -1 : 1;
-  return (a->number > b->number) - (a->number < b->number);
+  return compare_sizes(&a->number, &b->number);
 }
 
 uint32_t spaces_of(const struct Instruction *instruction) {
@@ -152,7 +152,7 @@ struct FormUse {
 static int compare_uses(const void *first, const void *second) {
   const struct FormUse *a = first, *b = second;
   if (a->form != b->form) return a->form < b->form ? -1 : 1;
-  return (a->number > b->number) - (a->number < b->number);
+  return compare_sizes(&a->number, &b->number);
 }
 
 /* Returns the form of each instruction of a function, as the number of the first one of that form. */

@@ -7,7 +7,6 @@
 #include "nonsmooth/contacts/planes.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
-#include "nonsmooth/tolerances.h"
 #include "support/arena.h"
 
 /* Flights shorter than this many units in the last place of the time count as rest: their ends cannot be separated. */

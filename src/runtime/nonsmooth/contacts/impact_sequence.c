@@ -19,7 +19,6 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/impacts.h"
 #include "nonsmooth/contacts/planes.h"
-#include "nonsmooth/tolerances.h"
 
 const char impact_without_solution[] = "an impact of a contact has no solution";
 

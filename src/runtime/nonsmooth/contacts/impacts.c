@@ -18,7 +18,6 @@
 
 #include "nonsmooth/cones/cone_impulses.h"
 #include "nonsmooth/contacts/contact_forces.h"
-#include "nonsmooth/tolerances.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "evaluation/services.h"
 

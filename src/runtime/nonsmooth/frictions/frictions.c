@@ -17,7 +17,6 @@
 #include "nonsmooth/frictions/jams.h"
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/planes.h"
-#include "nonsmooth/tolerances.h"
 #include "evaluation/evaluate.h"
 #include "evaluation/services.h"
 #include "nonsmooth/continuity.h"

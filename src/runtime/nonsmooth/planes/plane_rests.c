@@ -17,7 +17,6 @@
 #include "nonsmooth/planes/lines_at_rest.h"
 #include "nonsmooth/planes/plane_stops.h"
 #include "nonsmooth/planes/rest_forces.h"
-#include "nonsmooth/tolerances.h"
 
 /* In units of its stiction: a friction that needs more cannot stop the motion. */
 static const double hopeless = 1e6;

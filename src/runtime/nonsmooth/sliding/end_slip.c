@@ -19,7 +19,6 @@
 #include "nonsmooth/contacts/impact_sequence.h"
 #include "nonsmooth/contacts/impacts.h"
 #include "nonsmooth/contacts/planes.h"
-#include "nonsmooth/tolerances.h"
 
 /*
  * tau, relative to the time in which the accelerations without contact forces would cause the largest slip. Longer times

@@ -6,7 +6,6 @@
 #include "nonsmooth/contacts/contact_impulses.h"
 #include "nonsmooth/contacts/planes.h"
 #include "nonsmooth/sliding/end_slip.h"
-#include "nonsmooth/tolerances.h"
 
 /* Contacts jam if friction reduces their diagonal element of S to less than this fraction of that of W. */
 static const double jamming_share = 1e-3;
